@@ -1,0 +1,17 @@
+# Read by LAMMPS' own CMakeLists.txt right after its project() call (CMAKE_PROJECT_lammps_INCLUDE): adds the
+# package DUST to the target `lammps` as if it lay in src/DUST.
+
+include("${CMAKE_CURRENT_LIST_DIR}/Sources.cmake")
+
+# LAMMPS collects style headers in global lists, to which RegisterStyles() appends; ours are in them from the start
+foreach(kind gran_sub_mod fix compute command)
+  string(TOUPPER ${kind} list)
+  set_property(GLOBAL APPEND PROPERTY ${list} ${DUST_${kind}_HEADERS})
+endforeach()
+
+# the target does not exist yet: wait for the end of LAMMPS' CMakeLists.txt
+function(add_dust_to_lammps)
+  target_sources(lammps PRIVATE ${DUST_STYLE_SOURCES} ${DUST_CORE_SOURCES})
+  target_include_directories(lammps PRIVATE ${DUST_SOURCE_DIR})
+endfunction()
+cmake_language(DEFER CALL add_dust_to_lammps)

@@ -1,0 +1,14 @@
+# What belongs to the package DUST, found by LAMMPS' own naming rules: a style is one pair of files called after
+# its kind, so a new one is picked up without a word here. Included by our build and by the injected one.
+
+set(DUST_SOURCE_DIR "${CMAKE_CURRENT_LIST_DIR}/../src")
+get_filename_component(DUST_SOURCE_DIR "${DUST_SOURCE_DIR}" ABSOLUTE)
+file(GLOB DUST_CORE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/core/*.cpp")
+file(GLOB DUST_STYLE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/*.cpp")
+foreach(kind gran_sub_mod fix compute command)
+  set(pattern ${kind})
+  if(kind STREQUAL "command")
+    set(pattern create)    # the package's commands: create_dust
+  endif()
+  file(GLOB DUST_${kind}_HEADERS CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/${pattern}_*.h")
+endforeach()

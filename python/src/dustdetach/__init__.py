@@ -1,0 +1,31 @@
+"""Dust detachment from carrier particles that hit a wall, with LAMMPS and its package DUST.
+
+    from dustdetach import Impact, run, sweep
+    result = run(Impact(speed=8.0, angle=60.0))
+    print(result.dispersion_ratio)
+"""
+
+from .cases import figure4, figure5, read_cases
+from .errors import InvalidInput, LammpsMissing
+from .impact import Impact
+from .result import Result, read_csv
+from .runner import run
+from .sweeping import CasesFailed, sweep
+from .texture import Texture
+from .version import __version__
+
+__all__ = [
+    "CasesFailed",
+    "Impact",
+    "InvalidInput",
+    "LammpsMissing",
+    "Result",
+    "Texture",
+    "__version__",
+    "figure4",
+    "figure5",
+    "read_cases",
+    "read_csv",
+    "run",
+    "sweep",
+]

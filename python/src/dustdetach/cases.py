@@ -1,0 +1,95 @@
+"""Lists of impacts: the sweeps of the paper's Figs. 4 and 5, and sweeps described in a TOML file."""
+
+from __future__ import annotations
+
+import tomllib
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from .errors import InvalidInput
+from .impact import PARAMETERS, Impact
+
+#: impact speeds of both figures, m/s: dense where the near side lets go (1-4) and the far side begins (5-8)
+SPEEDS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 5.5, 6.0, 6.5, 7.0, 7.5, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0)
+RESTITUTIONS = (0.5, 0.7, 0.9)
+ANGLES = (15.0, 30.0, 45.0, 60.0, 75.0, 90.0)
+
+#: the most cases that one file may ask for
+MOST_CASES = 1_000_000
+
+
+def figure4() -> list[Impact]:
+    """Straight impacts at three coefficients of restitution (the paper's Fig. 4)."""
+    return [Impact(speed=speed, restitution=e) for e in RESTITUTIONS for speed in SPEEDS]
+
+
+def figure5() -> list[Impact]:
+    """Oblique impacts at e_pw = 0.7 (the paper's Fig. 5); 90 degrees is straight."""
+    return [Impact(speed=speed, angle=angle) for angle in ANGLES for speed in SPEEDS]
+
+
+NAMED = {"figure4": figure4, "figure5": figure5}
+
+
+def named_or_file(name: str) -> list[Impact]:
+    """The cases of ``figure4``, ``figure5`` or of a TOML file.
+
+    Raises:
+        InvalidInput: neither a known sweep nor a readable file, or something in the file is wrong.
+    """
+    if name in NAMED:
+        return NAMED[name]()
+    return read_cases(Path(name))
+
+
+def read_cases(path: Path) -> list[Impact]:
+    """Read a sweep from a TOML file.
+
+    Each key is a parameter of `Impact` with one value or a list of values; every combination is a case. Tables
+    ``[[case]]`` may follow: each replaces some of the keys above, and the sweep is what all of them make together.
+
+        speed = [2, 4, 8]
+        restitution = 0.7
+        [[case]]
+        angle = 90
+        [[case]]
+        angle = [30, 60]
+        wall_friction = [0.05, 0.3]
+
+    Raises:
+        InvalidInput: no such file, not TOML, an unknown key, a value out of range; the message names file and key.
+    """
+    try:
+        with open(path, "rb") as stream:
+            content = tomllib.load(stream)
+    except FileNotFoundError:
+        raise InvalidInput(f"{path}: no such file; allowed: {', '.join(NAMED)} or the name of a TOML file") from None
+    except OSError as error:
+        raise InvalidInput(f"{path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InvalidInput(f"{path}: not TOML: {error}".splitlines()[0]) from None
+
+    tables = content.pop("case", [{}])
+    if not (isinstance(tables, list) and tables and all(isinstance(table, dict) for table in tables)):
+        raise InvalidInput(f"{path}: case: allowed: tables [[case]]")
+    try:
+        cases = [impact for table in tables for impact in _combinations({**content, **table})]
+    except InvalidInput as error:
+        raise InvalidInput(f"{path}: {error}") from None
+    return list(dict.fromkeys(cases))
+
+
+def _combinations(values: dict[str, Any]) -> list[Impact]:
+    for name in values:
+        if name not in PARAMETERS:
+            raise InvalidInput(f"{name}: unknown key; allowed: {', '.join(PARAMETERS)}, case")
+    lists = {name: value if isinstance(value, list) else [value] for name, value in values.items()}
+    count = 1
+    for name, entries in lists.items():
+        if not entries:
+            raise InvalidInput(f"{name}: empty list")
+        count *= len(entries)
+    if count > MOST_CASES:
+        raise InvalidInput(f"{count} cases; allowed: at most {MOST_CASES}")
+    return [Impact.from_mapping(dict(zip(lists, chosen, strict=True))) for chosen in product(*lists.values())]

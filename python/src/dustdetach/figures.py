@@ -1,0 +1,196 @@
+"""Figures of a sweep in the manner of the paper's Figs. 4 and 5: dispersion ratio against impact speed."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from .errors import InvalidInput
+from .files import replace_file
+from .result import Result, read_csv
+from .sweeping import TABLE
+
+#: colours that colour-blind readers can tell apart (Okabe and Ito 2008)
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+FORMATS = ("png", "svg")
+
+_STYLE = {
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.linewidth": 0.7,
+    "grid.color": "#e6e6e6",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "lines.linewidth": 1.6,
+    "lines.markersize": 3.4,
+    "svg.hashsalt": "dustdetach",
+}
+
+# parameters that tell curves apart: how a legend writes them, and the factor to that unit
+_LABELS = {
+    "restitution": ("$e_{{pw}}$ = {:.2g}", 1.0),
+    "angle": ("$\\alpha$ = {:g}°", 1.0),
+    "coverage": ("$X_0$ = {:g}", 1.0),
+    "bare": ("bare cap {:g} rad", 1.0),
+    "grain_diameter": ("$d_d$ = {:g} µm", 1e6),
+    "carrier_diameter": ("$d_p$ = {:g} mm", 1e3),
+    "hamaker": ("$A_{{12}}$ = {:g}·10$^{{-20}}$ J", 1e20),
+    "z0": ("$z_0$ = {:g} nm", 1e9),
+    "friction": ("$\\mu_f$ = {:g}", 1.0),
+    "wall_friction": ("$\\mu_w$ = {:g}", 1.0),
+    "grain_damping": ("$\\zeta$ = {:g}", 1.0),
+    "tangential": ("{}", None),
+    "rotation": ("rotation {}", None),
+    "timestep": ("$\\Delta t$ = {:g} ns", 1e9),
+}
+
+Curve = tuple[float | str | bool, ...]
+
+
+def plot(folder: Path) -> list[Path]:
+    """Draw ``figure4`` (straight impacts) and ``figure5`` (angles) from ``folder/results.csv``, what there is of them.
+
+    Lines are the detachment functions, the mean over seeds where there are several; open markers are resolved runs.
+
+    Returns:
+        The files written, PNG and SVG.
+
+    Raises:
+        InvalidInput: no table, or nothing in it that makes a curve.
+    """
+    results = read_csv(folder / TABLE)
+    straight = [result for result in results if result.angle == 90]
+    oblique = _at_most_angles(results)
+    figures = {}
+    if oblique:
+        figures["figure5"] = oblique
+    if len(_curves(straight)) > 1 or (straight and not oblique):
+        figures["figure4"] = straight
+    if not any(len({result.speed for result in rows}) > 1 for rows in figures.values()):
+        raise InvalidInput(f"{folder / TABLE}: no curve to draw: at least two speeds are needed")
+    return [path for name in sorted(figures) for path in draw(figures[name], folder / name)]
+
+
+def draw(results: list[Result], stem: Path) -> list[Path]:
+    """Draw one figure: the whole carrier in the large panel, each hemisphere in a small one.
+
+    Args:
+        results: the rows; one curve for each combination of parameters that differ between them, speed apart.
+        stem: name of the files without their suffix.
+
+    Returns:
+        The files written.
+    """
+    curves = _curves(results)
+    with plt.rc_context(_STYLE):
+        figure = plt.figure(figsize=(7.1, 3.9), layout="constrained")
+        axes = figure.subplot_mosaic([["all", "north"], ["all", "south"]], width_ratios=[1.75, 1])
+        panels: list[tuple[str, str, float, Callable[[Result], float]]] = [
+            ("all", "Whole carrier", 1.0, lambda row: row.dispersion_ratio),
+            ("north", "North, away from the wall", 0.5, lambda row: row.north),
+            ("south", "South, the side of the impact", 0.5, lambda row: row.south),
+        ]
+        for name, title, top, share in panels:
+            _panel(axes[name], curves, share)
+            axes[name].set_title(title)
+            axes[name].set_ylim(0, top * 1.04)
+            axes[name].set_xlim(0, max(result.speed for result in results) * 1.02)
+        axes["all"].set_ylabel("Dispersion ratio (detached / initial dust mass)")
+        axes["all"].set_xlabel("Impact speed $v_p$ (m/s)")
+        axes["south"].set_xlabel("Impact speed $v_p$ (m/s)")
+        axes["north"].tick_params(labelbottom=False)
+        figure.legend(
+            handles=_legend(curves, results), loc="outside upper center", ncols=4, handlelength=2.2, columnspacing=1.6
+        )
+        written = []
+        for suffix in FORMATS:
+            path = stem.with_name(f"{stem.name}.{suffix}")
+            with replace_file(path) as part:
+                figure.savefig(part, dpi=200, metadata={"Date": None} if suffix == "svg" else None)
+            written.append(path)
+        plt.close(figure)
+    return written
+
+
+def _at_most_angles(results: list[Result]) -> list[Result]:
+    """The rows at the coefficient of restitution with the most oblique rows; none if all are straight."""
+    counts = Counter(result.restitution for result in results if result.angle != 90)
+    if not counts:
+        return []
+    chosen = counts.most_common(1)[0][0]
+    return [result for result in results if result.restitution == chosen]
+
+
+def _curves(results: list[Result]) -> dict[Curve, list[Result]]:
+    """Rows by the values that differ between them (speed, seed and method apart), in the order of these values."""
+    differing = _differing(results)
+    curves = defaultdict(list)
+    for result in results:
+        curves[tuple(getattr(result, name) for name in differing)].append(result)
+    return dict(sorted(curves.items()))
+
+
+def _differing(results: list[Result]) -> list[str]:
+    return [name for name in _LABELS if len({getattr(result, name) for result in results}) > 1]
+
+
+def _panel(axes: Axes, curves: dict[Curve, list[Result]], share: Callable[[Result], float]) -> None:
+    for index, rows in enumerate(curves.values()):
+        colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+        means = defaultdict(list)
+        for row in rows:
+            if row.method == "functions":
+                means[row.speed].append(share(row))
+        speeds = sorted(means)
+        ratios = [sum(means[speed]) / len(means[speed]) for speed in speeds]
+        axes.plot(speeds, ratios, color=colour, marker=marker, clip_on=False)
+        resolved = [row for row in rows if row.method == "resolved"]
+        axes.plot(
+            [row.speed for row in resolved],
+            [share(row) for row in resolved],
+            **_POINT,
+            color=colour,
+            marker=marker,
+        )
+
+
+_POINT = {"linestyle": "none", "markerfacecolor": "white", "markersize": 6, "markeredgewidth": 1.3}
+
+
+def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Line2D]:
+    differing = _differing(results)
+    handles = [
+        Line2D(
+            [],
+            [],
+            color=COLOURS[index % len(COLOURS)],
+            marker=MARKERS[index % len(MARKERS)],
+            label=", ".join(_label(name, value) for name, value in zip(differing, curve, strict=True)) or "functions",
+        )
+        for index, curve in enumerate(curves)
+    ]
+    if {result.method for result in results} == {"functions", "resolved"}:
+        handles.append(Line2D([], [], color="0.3", label="functions"))
+        handles.append(Line2D([], [], color="0.3", marker="o", **_POINT, label="dust-resolved"))
+    return handles
+
+
+def _label(name: str, value: float | str | bool) -> str:
+    pattern, factor = _LABELS[name]
+    return pattern.format(value if factor is None else value * factor)

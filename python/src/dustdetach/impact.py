@@ -1,0 +1,189 @@
+"""One impact of a dust-laden carrier on a wall: its parameters, their units and their allowed ranges."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import Any
+
+from .errors import InvalidInput
+
+METHODS = ("functions",)
+TANGENTIAL = ("estimate", "frictionless", "off")
+
+#: share of a surface that random sequential placement of discs covers before it jams
+JAMMING = 0.547
+
+#: the most grains a texture may have; beyond it a case would not fit in memory
+MOST_GRAINS = 10_000_000
+
+LARGEST_SEED = 900_000_000
+
+
+def option(field: str) -> str:
+    """The command-line option of a parameter: ``grain_diameter`` -> ``--grain-diameter``."""
+    return "--" + field.replace("_", "-")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Impact:
+    """A carrier with a monolayer of dust hits a rigid wall. SI units, angles as stated.
+
+    The defaults are the reference case of the paper: a steel carrier of 1.5 mm with calcium carbonate grains of
+    20 um at a coverage of 0.2.
+
+    Attributes:
+        method: ``functions``, the detachment functions on a carrier without grains as atoms.
+        speed: impact speed, m/s, above 0 and at most 100.
+        angle: between velocity and wall plane, degrees, above 0 and at most 90 (straight).
+        restitution: coefficient of restitution e_pw of carrier and wall, above 0 and at most 1.
+        coverage: X0, summed cross-section of the grains over the carrier's surface, above 0; random
+            placement jams near 0.5, see `largest_coverage`.
+        bare: half-angle of the bare cap where the carrier meets the wall, rad, from 0 to below pi.
+        grain_diameter: d_d, m, at most the carrier's.
+        carrier_diameter: d_p, m, above 0 and at most 1.
+        hamaker: A_12 of grain and carrier, J, above 0.
+        z0: separation at which the van der Waals force equals the pull-off force, m, above 0.
+        friction: mu_f between grain and carrier, from 0 to 10.
+        wall_friction: mu between carrier and wall, from 0 to 10.
+        grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0; only resolved runs use it.
+        seed: of the random texture, 1 to 900000000.
+        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``frictionless`` (Eq. 4) or ``off``.
+        rotation: whether the carrier's spin is followed; ``False``, as in the paper.
+        timestep: s, above 0 and at most 1e-7.
+
+    Raises:
+        InvalidInput: a value outside its range; the message names the option.
+    """
+
+    method: str = "functions"
+    speed: float
+    angle: float = 90.0
+    restitution: float = 0.7
+    coverage: float = 0.2
+    bare: float = 0.33
+    grain_diameter: float = 20e-6
+    carrier_diameter: float = 1.5e-3
+    hamaker: float = 14.633e-20
+    z0: float = 0.4e-9
+    friction: float = 0.3
+    wall_friction: float = 0.05
+    grain_damping: float = 1.0
+    seed: int = 1
+    tangential: str = "estimate"
+    rotation: bool = False
+    timestep: float = 1e-9
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            # under `from __future__ import annotations` a field's type is its spelling
+            value = _convert(field.name, str(field.type), getattr(self, field.name))
+            object.__setattr__(self, field.name, value)
+
+        if self.method == "resolved":
+            raise InvalidInput("--method: resolved impacts are not there yet; allowed: functions")
+        _one_of("method", self.method, METHODS)
+        _one_of("tangential", self.tangential, TANGENTIAL)
+        if self.rotation:
+            raise InvalidInput("--rotation: following the carrier's spin is not there yet; allowed: --no-rotation")
+
+        _above("speed", self.speed, 0.0, 100.0, "m/s")
+        _above("angle", self.angle, 0.0, 90.0, "degrees")
+        _above("restitution", self.restitution, 0.0, 1.0)
+        _above("carrier_diameter", self.carrier_diameter, 0.0, 1.0, "m")
+        _above("grain_diameter", self.grain_diameter, 0.0, self.carrier_diameter, "m (the carrier's diameter)")
+        _from("bare", self.bare, 0.0, math.pi, "rad", included=False)
+        _above("coverage", self.coverage, 0.0, self.largest_coverage, "(random placement jams there)")
+        _above("hamaker", self.hamaker, 0.0, 1e-15, "J")
+        _above("z0", self.z0, 0.0, 1e-6, "m")
+        _from("friction", self.friction, 0.0, 10.0)
+        _from("wall_friction", self.wall_friction, 0.0, 10.0)
+        _from("grain_damping", self.grain_damping, 0.0, 100.0)
+        _from("seed", self.seed, 1, LARGEST_SEED)
+        _above("timestep", self.timestep, 0.0, 1e-7, "s")
+
+        if self.grains > MOST_GRAINS:
+            smallest = self.carrier_diameter * math.sqrt(4 * self.coverage / MOST_GRAINS)
+            raise InvalidInput(
+                f"--grain-diameter: {self.grain_diameter:g} makes {self.grains:.3g} grains; allowed: "
+                f"{smallest:.3g} to {self.carrier_diameter:g} m at this coverage"
+            )
+        if self.grains < 1:
+            raise InvalidInput(
+                f"--coverage: {self.coverage:g} leaves no grain on the carrier; allowed: above "
+                f"{(self.grain_diameter / self.carrier_diameter) ** 2 / 8:.3g} for these diameters"
+            )
+
+    @property
+    def grains(self) -> int:
+        """Number of grains of the monolayer, N = 4 X0 (R_p/R_d)^2."""
+        return round(4 * self.coverage * (self.carrier_diameter / self.grain_diameter) ** 2)
+
+    @property
+    def largest_coverage(self) -> float:
+        """Coverage at which random sequential placement jams, 0.547 ((R_p+R_d)/R_p)^2 (1 - (1 - cos bare)/2)."""
+        shell = (1 + self.grain_diameter / self.carrier_diameter) ** 2
+        return round(JAMMING * shell * (1 + math.cos(self.bare)) / 2, 4)
+
+    @classmethod
+    def from_mapping(cls, values: dict[str, Any]) -> Impact:
+        """An impact from names and values.
+
+        Raises:
+            InvalidInput: an unknown name, a missing speed, or a value out of its range.
+        """
+        known = [field.name for field in fields(cls)]
+        for name in values:
+            if name not in known:
+                raise InvalidInput(f"{name}: unknown parameter; allowed: {', '.join(known)}")
+        if "speed" not in values:
+            raise InvalidInput("speed: missing; allowed: above 0 and at most 100 m/s")
+        return cls(**values)
+
+
+PARAMETERS = tuple(field.name for field in fields(Impact))
+PARAMETER_TYPES = {field.name: str(field.type) for field in fields(Impact)}
+
+
+def _convert(name: str, kind: str, value: Any) -> str | bool | int | float:
+    """The value as its field's type; numbers may come as any kind of number, numpy's included."""
+    if kind == "str":
+        if not isinstance(value, str):
+            raise InvalidInput(f"{option(name)}: {value!r} is not a word")
+        return value
+    if kind == "bool":
+        if not isinstance(value, bool):
+            raise InvalidInput(f"{option(name)}: {value!r} is not true or false")
+        return value
+    if isinstance(value, (str, bool)):
+        raise InvalidInput(f"{option(name)}: {value!r} is not a number")
+    try:
+        number = float(value)
+        whole = int(value) if kind == "int" else 0
+    except (TypeError, ValueError, OverflowError):
+        raise InvalidInput(f"{option(name)}: {value!r} is not a finite number") from None
+    if not math.isfinite(number):
+        raise InvalidInput(f"{option(name)}: {value} is not a finite number")
+    if kind == "int":
+        if whole != number:
+            raise InvalidInput(f"{option(name)}: {value} is not a whole number")
+        return whole
+    return number
+
+
+def _one_of(name: str, value: str, allowed: tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise InvalidInput(f"{option(name)}: unknown choice '{value}'; allowed: {', '.join(allowed)}")
+
+
+def _above(name: str, value: float, low: float, high: float, unit: str = "") -> None:
+    if not low < value <= high:
+        allowed = f"above {low:g} and at most {high:g} {unit}".rstrip()
+        raise InvalidInput(f"{option(name)}: {value:g} is out of range; allowed: {allowed}")
+
+
+def _from(name: str, value: float, low: float, high: float, unit: str = "", *, included: bool = True) -> None:
+    if not (low <= value <= high if included else low <= value < high):
+        end = "to" if included else "to below"
+        allowed = f"{low:g} {end} {high:.9g} {unit}".rstrip()
+        raise InvalidInput(f"{option(name)}: {value:.10g} is out of range; allowed: {allowed}")

@@ -1,0 +1,24 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_HAMAKER_H
+#define DUST_CORE_HAMAKER_H
+
+namespace Dust {
+
+/*! Surface energy at which the JKR pull-off force equals the van der Waals force at the least distance z0:
+ *  gamma = A/(18 pi z0^2), from 3 pi gamma R = A R/(6 z0^2) (Hamaker, Physica 4, 1058 (1937)).
+ *
+ * \param hamaker  Hamaker constant A of the two materials, energy
+ * \param z0       least distance of the surfaces, length
+ * \return         gamma, energy/area; the work of adhesion is 2 gamma */
+inline double surface_energy(double hamaker, double z0)
+{
+  constexpr double PI = 3.14159265358979323846;
+  return hamaker / (18.0 * PI * z0 * z0);
+}
+
+}    // namespace Dust
+
+#endif

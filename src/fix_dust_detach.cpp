@@ -1,0 +1,776 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "fix_dust_detach.h"
+
+#include "core/hamaker.h"
+#include "core/jkr.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "memory.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+static constexpr double UNSET = -1.0;
+
+/* ---------------------------------------------------------------------- */
+
+FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), carrier_radius(0.0), texture_checksum(0.0), state(nullptr), attached(nullptr),
+    window_mass(nullptr), newcomers(true), mine{}, sums_step(-1)
+{
+  if (!atom->radius_flag || !atom->rmass_flag)
+    error->all(FLERR, "Fix dust/detach needs atoms with radius and mass of their own, such as atom_style sphere");
+  if (domain->dimension != 3) error->all(FLERR, "Fix dust/detach needs dimension 3");
+
+  parse(narg, arg);
+
+  scalar_flag = vector_flag = global_freq = 1;
+  size_vector = 13;
+  extscalar = extvector = 0;
+  peratom_flag = peratom_freq = 1;
+  size_peratom_cols = NCOLUMNS;
+  local_flag = local_freq = 1;
+  size_local_rows = 0;
+  size_local_cols = NROW;
+  restart_global = restart_peratom = create_attribute = 1;
+  maxexchange_dynamic = 1;
+  maxexchange = fixed_size();
+
+  // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
+  grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  if (find_carriers()) build();
+  // last, as an error above leaves no fix behind that could be called back
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixDustDetach::~FixDustDetach()
+{
+  if (modify->get_fix_by_id(id)) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(state);
+  memory->destroy(attached);
+  memory->destroy(window_mass);
+  memory->destroy(array_atom);
+}
+
+/* ----------------------------------------------------------------------
+   input
+------------------------------------------------------------------------- */
+
+void FixDustDetach::parse(int narg, char **arg)
+{
+  input.diameter = 0.0;
+  input.density = input.surface_energy = input.elastic[0] = input.friction = UNSET;
+  input.every = 1;
+  bool bare_given = false;
+
+  const auto word = [&](int iarg) { return std::string(arg[iarg]); };
+  const auto need = [&](int iarg, int n) {
+    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix dust/detach " + word(iarg), error);
+  };
+  const auto number = [&](int iarg) { return utils::numeric(FLERR, arg[iarg], false, lmp); };
+  // value after a keyword that must lie in a range
+  const auto checked = [&](int iarg, int k, bool ok, const char *range) {
+    if (!ok) error->all(FLERR, "Fix dust/detach {} value {} must be {}", arg[iarg], arg[iarg + k], range);
+  };
+  const auto positive = [&](int iarg, int k) {
+    const double value = number(iarg + k);
+    checked(iarg, k, value > 0.0 && std::isfinite(value), "above 0");
+    return value;
+  };
+  // keyword of which a later version will know more
+  const auto only = [&](int iarg, const char *allowed) {
+    if (word(iarg + 1) != allowed)
+      error->all(FLERR, "Fix dust/detach {} {} is not available: use {} {}", arg[iarg], arg[iarg + 1], arg[iarg], allowed);
+  };
+
+  int iarg = 3;
+  while (iarg < narg) {
+    const std::string key = word(iarg);
+    if (key == "texture") {
+      iarg = parse_texture(iarg, narg, arg);
+    } else if (key == "bare") {
+      need(iarg, 1);
+      input.bare.half_angle = number(iarg + 1);
+      checked(iarg, 1, input.bare.half_angle >= 0.0 && input.bare.half_angle < 3.14159265358979, "at least 0 and below pi");
+      bare_given = true;
+      iarg += 2;
+      if (iarg < narg && utils::is_double(arg[iarg])) {
+        if (iarg + 2 >= narg) utils::missing_cmd_args(FLERR, "fix dust/detach bare", error);
+        double *axis = input.bare.axis;
+        for (int d = 0; d < 3; d++) axis[d] = number(iarg + d);
+        const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        if (!(length > 0.0 && std::isfinite(length))) error->all(FLERR, "Fix dust/detach bare axis must not be 0 0 0");
+        for (int d = 0; d < 3; d++) axis[d] /= length;
+        iarg += 3;
+      }
+    } else if (key == "density") {
+      need(iarg, 1);
+      input.density = positive(iarg, 1) / force->mv2d;
+      iarg += 2;
+    } else if (key == "hamaker") {
+      need(iarg, 2);
+      input.surface_energy = Dust::surface_energy(positive(iarg, 1), positive(iarg, 2));
+      iarg += 3;
+    } else if (key == "surface") {
+      need(iarg, 1);
+      input.surface_energy = positive(iarg, 1);
+      iarg += 2;
+    } else if (key == "elastic") {
+      need(iarg, 4);
+      for (int k = 0; k < 4; k += 2) {
+        input.elastic[k] = positive(iarg, k + 1) / force->nktv2p;
+        input.elastic[k + 1] = number(iarg + k + 2);
+        checked(iarg, k + 2, input.elastic[k + 1] > -1.0 && input.elastic[k + 1] <= 0.5, "above -1 and at most 0.5");
+      }
+      iarg += 5;
+    } else if (key == "friction") {
+      need(iarg, 1);
+      input.friction = number(iarg + 1);
+      checked(iarg, 1, input.friction >= 0.0 && std::isfinite(input.friction), "at least 0");
+      iarg += 2;
+    } else if (key == "tangential") {
+      need(iarg, 1);
+      const std::string mode = word(iarg + 1);
+      if (mode == "estimate") input.criteria.tangential = Dust::Criteria::ESTIMATE;
+      else if (mode == "frictionless") input.criteria.tangential = Dust::Criteria::FRICTIONLESS;
+      else if (mode == "off") input.criteria.tangential = Dust::Criteria::OFF;
+      else error->all(FLERR, "Fix dust/detach tangential value {} must be estimate, frictionless or off", mode);
+      iarg += 2;
+    } else if (key == "criteria") {
+      need(iarg, 1);
+      const std::string mode = word(iarg + 1);
+      checked(iarg, 1, mode == "liftoff" || mode == "ibrahim", "liftoff or ibrahim");
+      input.criteria.ibrahim = mode == "ibrahim";
+      iarg += 2;
+    } else if (key == "every") {
+      need(iarg, 1);
+      input.every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      checked(iarg, 1, input.every > 0, "at least 1");
+      iarg += 2;
+    } else if (key == "write") {
+      need(iarg, 1);
+      input.write = word(iarg + 1);
+      iarg += 2;
+    } else if (key == "rotation" || key == "mass") {
+      need(iarg, 1);
+      only(iarg, "no");
+      iarg += 2;
+    } else if (key == "orientation") {
+      need(iarg, 1);
+      only(iarg, "same");
+      iarg += 2;
+    } else if (key == "emit") {
+      need(iarg, 1);
+      only(iarg, "none");
+      iarg += 2;
+    } else if (key == "distribution" || key == "stiffen") {
+      error->all(FLERR, "Fix dust/detach {} is not available yet", key);
+    } else
+      error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, density, hamaker, surface, elastic, "
+                 "friction, tangential, criteria, every, write, rotation, orientation, mass or emit", key);
+  }
+
+  if (input.diameter == 0.0 && input.file.empty()) error->all(FLERR, "Fix dust/detach needs keyword texture");
+  if (!input.file.empty() && bare_given)
+    error->all(FLERR, "Fix dust/detach bare goes with texture monolayer: a texture file has its own bare cap");
+  set_defaults();
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixDustDetach::parse_texture(int iarg, int narg, char **arg)
+{
+  if (input.diameter != 0.0 || !input.file.empty()) error->all(FLERR, "Fix dust/detach texture is given twice");
+  if (iarg + 2 >= narg) utils::missing_cmd_args(FLERR, "fix dust/detach texture", error);
+  const std::string source = arg[iarg + 1];
+
+  if (source == "file") {
+    input.file = arg[iarg + 2];
+    // rank 0 reads, all parse the same text
+    int size = -1;
+    if (comm->me == 0) {
+      std::ifstream in(input.file);
+      std::ostringstream all;
+      if (in && all << in.rdbuf()) input.text = all.str();
+      if (in) size = static_cast<int>(input.text.size());
+    }
+    MPI_Bcast(&size, 1, MPI_INT, 0, world);
+    if (size < 0) error->all(FLERR, "Fix dust/detach cannot read texture file {}", input.file);
+    input.text.resize(size);
+    MPI_Bcast(&input.text[0], size, MPI_CHAR, 0, world);
+    try {
+      std::istringstream in(input.text);
+      texture = Dust::read_texture(in);
+    } catch (Dust::TextureError &e) {
+      error->all(FLERR, "Fix dust/detach texture file {}: {}", input.file, e.what());
+    }
+    return iarg + 3;
+  }
+
+  if (source != "monolayer")
+    error->all(FLERR, "Fix dust/detach texture source {} must be file or monolayer", source);
+  input.diameter = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
+  if (!(input.diameter > 0.0 && std::isfinite(input.diameter)))
+    error->all(FLERR, "Fix dust/detach texture monolayer diameter {} must be above 0", arg[iarg + 2]);
+  input.coverage = UNSET;
+  input.seed = 0;
+  for (iarg += 3; iarg + 1 < narg; iarg += 2) {
+    if (strcmp(arg[iarg], "coverage") == 0) {
+      input.coverage = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(input.coverage > 0.0 && std::isfinite(input.coverage)))
+        error->all(FLERR, "Fix dust/detach coverage {} must be above 0", arg[iarg + 1]);
+    } else if (strcmp(arg[iarg], "seed") == 0) {
+      input.seed = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (input.seed <= 0) error->all(FLERR, "Fix dust/detach seed {} must be above 0", arg[iarg + 1]);
+    } else
+      break;
+  }
+  if (input.coverage == UNSET) error->all(FLERR, "Fix dust/detach texture monolayer needs coverage");
+  if (input.seed == 0) error->all(FLERR, "Fix dust/detach texture monolayer needs seed");
+  return iarg;
+}
+
+/* ----------------------------------------------------------------------
+   the reference case, calcium carbonate on stainless steel, is known in SI units only
+------------------------------------------------------------------------- */
+
+void FixDustDetach::set_defaults()
+{
+  const bool si = strcmp(update->unit_style, "si") == 0;
+  const auto absent = [&](double value, const char *key) {
+    if (value == UNSET && !si)
+      error->all(FLERR, "Fix dust/detach needs keyword {} (it has a default with units si only)", key);
+    return value == UNSET;
+  };
+  if (absent(input.density, "density")) input.density = 2700.0;
+  if (absent(input.surface_energy, "hamaker or surface"))
+    input.surface_energy = Dust::surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9);
+  if (absent(input.elastic[0], "elastic")) {
+    const double reference[4] = {75.0e9, 0.3, 210.0e9, 0.3};
+    std::copy_n(reference, 4, input.elastic);
+  }
+  if (absent(input.friction, "friction")) input.friction = 0.3;
+}
+
+/* ----------------------------------------------------------------------
+   size of the carriers; false if there are none yet
+------------------------------------------------------------------------- */
+
+bool FixDustDetach::find_carriers()
+{
+  double extremes[2] = {0.0, 0.0};    // of radius and -1/radius: absent carriers change neither
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double radius = atom->radius[i];
+    if (!(radius > 0.0))
+      error->one(FLERR, "Fix dust/detach carrier {} has radius {}: it must be above 0", atom->tag[i], radius);
+    extremes[0] = std::max(extremes[0], radius);
+    extremes[1] = std::max(extremes[1], 1.0 / radius);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (extremes[0] == 0.0) return false;
+  const double largest = extremes[0], least = 1.0 / extremes[1];
+  if (largest - least > 1.0e-6 * largest)
+    error->all(FLERR, "Fix dust/detach group {} has carriers of diameter {} to {}: one texture serves one size, use a "
+               "group and a fix for each", group->names[igroup], 2.0 * least, 2.0 * largest);
+  carrier_radius = largest;
+  return true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+Dust::Texture FixDustDetach::make_texture() const
+{
+  if (input.file.empty())
+    return Dust::place_monolayer(carrier_radius, 0.5 * input.diameter, input.coverage, input.bare, input.seed);
+  if (std::fabs(texture.carrier_radius - carrier_radius) > 1.0e-6 * carrier_radius)
+    throw Dust::TextureError(fmt::format("file {} is for carriers of diameter {}, not {}", input.file,
+                                         2.0 * texture.carrier_radius, 2.0 * carrier_radius));
+  return texture;
+}
+
+/* ----------------------------------------------------------------------
+   texture and what depends on it; on all ranks at once
+------------------------------------------------------------------------- */
+
+void FixDustDetach::build()
+{
+  try {
+    texture = make_texture();
+  } catch (Dust::TextureError &e) {
+    error->all(FLERR, "Fix dust/detach texture: {}", e.what());
+  }
+
+  const double *el = input.elastic;
+  const Dust::Material material = {input.density, input.surface_energy,
+                                   Dust::combined_modulus(el[0], el[1], el[2], el[3]), input.friction};
+  // the core compares accelerations: the pull-off force per mass in units of velocity/time
+  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, input.criteria, force->ftm2v);
+
+  // a number that tells this texture from another one in a restart file
+  texture_checksum = 0.0;
+  int i = 0;
+  for (const Dust::Grain &g : texture.grains)
+    texture_checksum += std::cos(++i) * (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / carrier_radius);
+
+  memory->destroy(attached);
+  grow_arrays(atom->nmax);
+  maxexchange = fixed_size();
+  adopt();
+
+  if (comm->me == 0) {
+    utils::logmesg(lmp, "Fix dust/detach {}: {} grains a carrier, mean mass {:.5g}, pull-off acceleration {:.5g} to {:.5g}\n",
+                   id, functions->grains(), functions->mean_mass(), functions->least_hold(),
+                   functions->largest_hold());
+  }
+  if (!input.write.empty() && comm->me == 0) {
+    std::ofstream out(input.write);
+    Dust::write_texture(texture, out);
+    out.close();
+    if (!out) error->one(FLERR, "Fix dust/detach cannot write texture file {}", input.write);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixDustDetach::setmask()
+{
+  return POST_NEIGHBOR | POST_FORCE;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix dust/detach works with run_style verlet, not with {}", update->integrate_style);
+
+  // what post_force() finds in f must be contact forces, all of them and nothing else
+  bool after = false;
+  for (const auto &other : modify->get_fix_list()) {
+    if (other == this) after = true;
+    if (utils::strmatch(other->style, "^dust/detach") || utils::strmatch(other->style, "^store/force")) continue;
+    const bool contact = utils::strmatch(other->style, "^wall/gran") || utils::strmatch(other->style, "^surface/");
+    if (contact && after)
+      error->all(FLERR, "Fix {} ({}) must stand before fix {} (dust/detach), which needs its contact forces",
+                 other->id, other->style, id);
+    if (!contact && !after && (modify->get_fix_mask(other) & POST_FORCE))
+      error->all(FLERR, "Fix {} ({}) must stand after fix {} (dust/detach), which would take its force for a contact "
+                 "force", other->id, other->style, id);
+  }
+
+  if (functions) {
+    adopt();
+  } else if (find_carriers()) {
+    build();
+  } else {
+    const auto inserts = [](const Fix *fix) { return utils::strmatch(fix->style, "^(pour|deposit|append/atoms|gcmc)"); };
+    const auto &fixes = modify->get_fix_list();
+    if (std::none_of(fixes.begin(), fixes.end(), inserts))
+      error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
+  }
+  sums_step = -1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::setup_post_neighbor()
+{
+  post_neighbor();
+}
+
+/* ----------------------------------------------------------------------
+   atoms have come, gone or changed places
+------------------------------------------------------------------------- */
+
+void FixDustDetach::post_neighbor()
+{
+  if (!functions && find_carriers()) build();
+  if (newcomers) adopt();
+  drop_lost_collisions();
+}
+
+/* ----------------------------------------------------------------------
+   new atoms of the group become carriers with all their grains
+------------------------------------------------------------------------- */
+
+void FixDustDetach::adopt()
+{
+  if (!functions) return;
+  newcomers = false;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || state[i] != NO_CARRIER) continue;
+    if (std::fabs(atom->radius[i] - carrier_radius) > 1.0e-6 * carrier_radius)
+      error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
+                 atom->tag[i], 2.0 * atom->radius[i], 2.0 * carrier_radius);
+    state[i] = FREE_FLIGHT;
+    std::copy(functions->all_attached().begin(), functions->all_attached().end(), attached[i]);
+    array_atom[i][ATTACHED] = functions->grains();
+    mine.initial += functions->grains();
+  }
+}
+
+/* ----------------------------------------------------------------------
+   here f holds contact forces only, and v of a carrier without one is its velocity before (or after) contact
+------------------------------------------------------------------------- */
+
+void FixDustDetach::post_force(int /*vflag*/)
+{
+  const int *const mask = atom->mask;
+  const double *const *const f = atom->f;
+  const int nlocal = atom->nlocal;
+  sums_step = -1;
+
+  for (int i = 0; i < nlocal; i++) {
+    if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
+    if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0)
+      collide(i);
+    else if (state[i] >= 0)
+      rebound(i);
+  }
+  if (update->ntimestep % input.every == 0) close_window();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::collide(int i)
+{
+  if (state[i] == FREE_FLIGHT) {
+    state[i] = start_collision();
+    collisions[state[i]].begin(*functions, atom->v[i]);
+  }
+  Dust::Collision &collision = collisions[state[i]];
+  const double per_mass = force->ftm2v / atom->rmass[i];
+  const double *f = atom->f[i];
+  const double acceleration[3] = {f[0] * per_mass, f[1] * per_mass, f[2] * per_mass};
+  if (collision.step(*functions, acceleration, update->dt, attached[i], detached)) record(i);
+  // with room to spare, so that Comm need not enlarge its buffers each time
+  const int size = fixed_size() + collision.packed_size();
+  if (size > maxexchange) maxexchange = fixed_size() + 2 * collision.packed_size();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::rebound(int i)
+{
+  Dust::Collision &collision = collisions[state[i]];
+  if (collision.end(*functions, atom->v[i], attached[i], detached)) record(i);
+  array_atom[i][CONTACT_TIME] = collision.duration();
+  array_atom[i][PEAK_ACCELERATION] = collision.peak_acceleration();
+  mine.collisions += 1.0;
+  mine.north += collision.lost_north(*functions, atom->v[i], attached[i]);
+  mine.sliding += collision.sliding_grains();
+  mine.rolling += collision.rolling_grains();
+  idle.push_back(state[i]);
+  state[i] = FREE_FLIGHT;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixDustDetach::start_collision()
+{
+  if (idle.empty()) {
+    collisions.emplace_back();
+    idle.reserve(collisions.capacity());
+    return static_cast<int>(collisions.size()) - 1;
+  }
+  const int index = idle.back();
+  idle.pop_back();
+  return index;
+}
+
+/* ----------------------------------------------------------------------
+   collisions whose carriers have left this rank or were deleted
+------------------------------------------------------------------------- */
+
+void FixDustDetach::drop_lost_collisions()
+{
+  if (idle.size() == collisions.size()) return;
+  std::vector<bool> used(collisions.size(), false);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (state[i] >= 0) used[state[i]] = true;
+  idle.clear();
+  for (size_t k = 0; k < used.size(); k++)
+    if (!used[k]) idle.push_back(static_cast<int>(k));
+}
+
+/* ----------------------------------------------------------------------
+   the grains that have just left carrier i
+------------------------------------------------------------------------- */
+
+void FixDustDetach::record(int i)
+{
+  const double half_kick = 0.5 * update->dt * force->ftm2v / atom->rmass[i];    // v is half a step behind
+  for (const Dust::Detachment &d : detached) {
+    const double weight = functions->weight(d.bit);
+    const double mass = weight * functions->mean_mass();
+    mine.modes[d.mode] += 1.0;
+    mine.weight += weight;
+    array_atom[i][ATTACHED] -= 1.0;
+    array_atom[i][MASS] += mass;
+    window_mass[i] += mass;
+
+    const int number = functions->grain(d.bit);
+    const Dust::Grain &grain = texture.grains[number];
+    std::array<double, NROW> row = {double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0,
+                                    2.0 * grain.radius};
+    for (int k = 0; k < 3; k++) {
+      row[5 + k] = atom->x[i][k] + (carrier_radius + grain.radius) * grain.n[k];
+      row[8 + k] = atom->v[i][k] + half_kick * atom->f[i][k] + d.velocity[k];
+    }
+    events.push_back(row);
+  }
+  detached.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::close_window()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    array_atom[i][WINDOW_MASS] = window_mass[i];
+    window_mass[i] = 0.0;
+  }
+  if (events.empty() && rows.empty()) return;
+  rows.swap(events);
+  events.clear();
+  row_pointers.clear();
+  for (auto &row : rows) row_pointers.push_back(row.data());
+  array_local = row_pointers.data();
+  size_local_rows = static_cast<int>(rows.size());
+}
+
+/* ----------------------------------------------------------------------
+   sums over all ranks; all are whole numbers, or sums of 1, for equal grains: the same on any number of ranks
+------------------------------------------------------------------------- */
+
+const FixDustDetach::Sums &FixDustDetach::sum_up()
+{
+  if (sums_step == update->ntimestep) return sums;
+  sums_step = update->ntimestep;
+  Sums local = {mine, 0.0};
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
+    local.attached += array_atom[i][ATTACHED];
+    if (state[i] < 0) continue;
+    const Dust::Collision &collision = collisions[state[i]];    // not over: as it stands
+    local.totals.north += collision.lost_north(*functions, atom->v[i], attached[i]);
+    local.totals.sliding += collision.sliding_grains();
+    local.totals.rolling += collision.rolling_grains();
+  }
+  static_assert(sizeof(Sums) % sizeof(double) == 0, "Sums must hold doubles only");
+  MPI_Allreduce(&local, &sums, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
+  return sums;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixDustDetach::compute_scalar()
+{
+  const Sums &s = sum_up();
+  return s.totals.initial > 0.0 ? s.totals.weight / s.totals.initial : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixDustDetach::compute_vector(int n)
+{
+  const Sums &s = sum_up();
+  const Totals &t = s.totals;
+  const double grain_mass = functions ? functions->mean_mass() : 0.0;
+  const double *modes = t.modes;
+  const double lost = modes[Dust::NORMAL] + modes[Dust::TANGENTIAL] + modes[Dust::SLIDING] + modes[Dust::ROLLING];
+  const double values[] = {t.initial, s.attached, modes[Dust::NORMAL], modes[Dust::TANGENTIAL], lost - t.north, t.north,
+                           t.weight * grain_mass, t.initial * grain_mass, t.collisions, t.sliding, t.rolling,
+                           modes[Dust::SLIDING], modes[Dust::ROLLING]};
+  return values[n];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixDustDetach::memory_usage()
+{
+  const double words = functions ? functions->words() : 0;
+  double bytes = double(atom->nmax) * (sizeof(int) + words * sizeof(uint64_t) + (NCOLUMNS + 1) * sizeof(double));
+  for (const Dust::Collision &collision : collisions) bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
+  return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]);
+}
+
+/* ----------------------------------------------------------------------
+   per-atom data
+------------------------------------------------------------------------- */
+
+void FixDustDetach::grow_arrays(int nmax)
+{
+  memory->grow(state, nmax, "dust/detach:state");
+  memory->grow(window_mass, nmax, "dust/detach:window_mass");
+  memory->grow(array_atom, nmax, NCOLUMNS, "dust/detach:array_atom");
+  if (functions) memory->grow(attached, nmax, functions->words(), "dust/detach:attached");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
+{
+  state[j] = state[i];
+  window_mass[j] = window_mass[i];
+  std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), array_atom[j]);
+  if (functions) std::copy_n(attached[i], functions->words(), attached[j]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::set_arrays(int i)
+{
+  state[i] = NO_CARRIER;
+  window_mass[i] = 0.0;
+  std::fill_n(array_atom[i], static_cast<int>(NCOLUMNS), 0.0);
+  newcomers = true;
+}
+
+/* ----------------------------------------------------------------------
+   layout: words of a texture or 0, collision or not, columns, mass of the window, bits, collision
+------------------------------------------------------------------------- */
+
+int FixDustDetach::fixed_size() const
+{
+  return 2 + NCOLUMNS + 1 + (functions ? functions->words() : 0);
+}
+
+int FixDustDetach::packed_size(int i) const
+{
+  if (state[i] == NO_CARRIER) return 1;
+  return fixed_size() + (state[i] >= 0 ? collisions[state[i]].packed_size() : 0);
+}
+
+int FixDustDetach::pack(int i, double *buf) const
+{
+  if (state[i] == NO_CARRIER) {
+    buf[0] = 0.0;
+    return 1;
+  }
+  const int words = functions->words();
+  double *p = buf;
+  *p++ = words;
+  *p++ = state[i] >= 0;
+  p = std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), p);
+  *p++ = window_mass[i];
+  std::memcpy(p, attached[i], words * sizeof(uint64_t));
+  p += words;
+  if (state[i] >= 0) {
+    collisions[state[i]].pack(p);
+    p += collisions[state[i]].packed_size();
+  }
+  return static_cast<int>(p - buf);
+}
+
+void FixDustDetach::unpack(int i, const double *buf)
+{
+  set_arrays(i);
+  const double *p = buf;
+  const int words = static_cast<int>(*p++);
+  if (words == 0) return;
+  if (!functions || words != functions->words())
+    error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
+  const bool colliding = *p++ > 0.0;
+  std::copy_n(p, static_cast<int>(NCOLUMNS), array_atom[i]);
+  p += NCOLUMNS;
+  window_mass[i] = *p++;
+  std::memcpy(attached[i], p, words * sizeof(uint64_t));
+  p += words;
+  state[i] = FREE_FLIGHT;
+  if (colliding) {
+    state[i] = start_collision();
+    collisions[state[i]].unpack(*functions, p);
+    maxexchange = std::max(maxexchange, fixed_size() + 2 * collisions[state[i]].packed_size());
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixDustDetach::pack_exchange(int i, double *buf)
+{
+  buf[0] = packed_size(i) + 1;
+  return pack(i, buf + 1) + 1;
+}
+
+int FixDustDetach::unpack_exchange(int nlocal, double *buf)
+{
+  unpack(nlocal, buf + 1);
+  return static_cast<int>(buf[0]);
+}
+
+/* ----------------------------------------------------------------------
+   restart: totals, per carrier what a migrating carrier takes along
+------------------------------------------------------------------------- */
+
+void FixDustDetach::write_restart(FILE *fp)
+{
+  double list[1 + sizeof(Totals) / sizeof(double)];
+  list[0] = texture_checksum;
+  MPI_Reduce(&mine, &list[1], sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
+  if (comm->me == 0) {
+    const int size = sizeof(list);
+    fwrite(&size, sizeof(int), 1, fp);
+    fwrite(list, sizeof(list), 1, fp);
+  }
+}
+
+void FixDustDetach::restart(char *buf)
+{
+  double checksum;
+  std::memcpy(&checksum, buf, sizeof(double));
+  if (checksum != 0.0 && functions && checksum != texture_checksum)
+    error->all(FLERR, "Fix dust/detach texture is not the one of the restart file");
+  mine = Totals{};
+  if (comm->me == 0) std::memcpy(&mine, buf + sizeof(double), sizeof(Totals));
+  newcomers = true;
+}
+
+int FixDustDetach::pack_restart(int i, double *buf)
+{
+  return pack_exchange(i, buf);    // LAMMPS wants the size first, too
+}
+
+void FixDustDetach::unpack_restart(int i, int nth)
+{
+  const double *buf = atom->extra[i];
+  for (int k = 0; k < nth; k++) buf += static_cast<int>(buf[0]);
+  unpack(i, buf + 1);
+}
+
+int FixDustDetach::size_restart(int i)
+{
+  return packed_size(i) + 1;
+}
+
+int FixDustDetach::maxsize_restart()
+{
+  int size = fixed_size() + 1;
+  for (int i = 0; i < atom->nlocal; i++) size = std::max(size, packed_size(i) + 1);
+  MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_INT, MPI_MAX, world);
+  return size;
+}

@@ -1,0 +1,122 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(dust/detach,FixDustDetach);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_DUST_DETACH_H
+#define LMP_FIX_DUST_DETACH_H
+
+#include "fix.h"
+
+#include "core/detachment.h"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixDustDetach : public Fix {
+ public:
+  FixDustDetach(class LAMMPS *, int, char **);
+  ~FixDustDetach() override;
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void post_neighbor() override;
+  void post_force(int) override;
+
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+ private:
+  // what the input asks for
+  struct {
+    std::string file, text;    // texture from a file: its name and what it holds
+    std::string write;         // file to write the texture to
+    double diameter, coverage;
+    int seed;
+    Dust::BareCap bare;
+    double density, surface_energy, elastic[4], friction;
+    Dust::Criteria criteria;
+    int every;
+  } input;
+  void parse(int, char **);
+  int parse_texture(int, int, char **);
+  void set_defaults();
+
+  // texture, once the size of the carriers is known
+  double carrier_radius;    // 0 until then
+  Dust::Texture texture;
+  std::unique_ptr<Dust::DetachmentFunctions> functions;
+  double texture_checksum;
+  bool find_carriers();
+  void build();
+  Dust::Texture make_texture() const;
+
+  // per atom
+  enum { NO_CARRIER = -2, FREE_FLIGHT = -1 };    // other states: index of the collision
+  int *state;
+  uint64_t **attached;
+  double *window_mass;    // lost in the window that is not complete yet
+  enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
+  bool newcomers;         // atoms were added that may be carriers
+  void adopt();
+
+  // collisions under way on this rank
+  std::vector<Dust::Collision> collisions;
+  std::vector<int> idle;
+  int start_collision();
+  void drop_lost_collisions();
+  void collide(int);
+  void rebound(int);
+
+  // what this rank has counted since the start, or since it read a restart file
+  struct Totals {
+    double initial, modes[Dust::NMODES], weight, north, collisions, sliding, rolling;
+  } mine;
+  struct Sums {
+    Totals totals;
+    double attached;
+  } sums;
+  bigint sums_step;    // step the sums over all ranks are of
+  const Sums &sum_up();
+
+  // detachments
+  std::vector<Dust::Detachment> detached;              // of one carrier in one step
+  static constexpr int NROW = 11;
+  std::vector<std::array<double, NROW>> events, rows;  // of this window and of the last complete one
+  std::vector<double *> row_pointers;
+  void record(int);
+  void close_window();
+
+  int fixed_size() const;
+  int packed_size(int) const;
+  int pack(int, double *) const;
+  void unpack(int, const double *);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

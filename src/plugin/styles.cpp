@@ -1,0 +1,121 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+
+   dust_styles.so registers the package's styles, and the granular styles compiled with our sub-models, in a host
+   that dustplugin.so has found to be the LAMMPS it was compiled for.
+
+   Styles are taken from their headers, as LAMMPS does it: the build lists the headers of each kind in
+   dust_style_KIND.h, and nothing here changes when one is added.
+------------------------------------------------------------------------- */
+
+#include "dust_style_command.h"
+#include "dust_style_compute.h"
+#include "dust_style_fix.h"
+#include "dust_style_pair.h"
+
+#include "error.h"
+#include "force.h"
+#include "input.h"
+#include "lammps.h"
+#include "modify.h"
+#include "plugin.h"
+#include "version.h"
+
+#include <map>
+#include <set>
+#include <string>
+
+using namespace LAMMPS_NS;
+
+namespace {
+
+template <class Style> void *create(void *lmp)
+{
+  return new Style((LAMMPS *) lmp);
+}
+
+template <class Style> void *create_with_args(void *lmp, int narg, char **arg)
+{
+  return new Style((LAMMPS *) lmp, narg, arg);
+}
+
+// LAMMPS keeps the pointers that it is given for as long as the process lives
+const char *remember(const std::string &text)
+{
+  static std::set<std::string> texts;
+  return texts.insert(text).first->c_str();
+}
+
+class Registry {
+ public:
+  Registry(LAMMPS *lmp, void *handle, lammpsplugin_regfunc regfunc) :
+      lmp(lmp), handle(handle), regfunc(regfunc)
+  {
+  }
+
+  // Two lists know a plugin's styles: one for the process (`plugin list`, restored by 4Jul2026 in every new instance
+  // and after `clear`) and the map of each instance, which decides what a deck gets. LAMMPS ignores a
+  // style that the process knows already, which on 4Feb2025 leaves a second instance without it; so the first is
+  // filled once and the second always.
+  template <class Creator>
+  void add(const char *style, const char *name, lammpsplugin_factory1 *v1, lammpsplugin_factory2 *v2,
+           std::map<std::string, Creator> *map)
+  {
+    lammpsplugin_t plugin = {};
+    plugin.version = LAMMPS_VERSION;
+    plugin.style = style;
+    plugin.name = name;
+    plugin.info = remember(std::string(style) + " style " + name + " of package DUST");
+    plugin.author = "the DUST developers";
+    plugin.handle = handle;
+    if (v1)
+      plugin.creator.v1 = v1;
+    else
+      plugin.creator.v2 = v2;
+
+    const int index = plugin_find(style, name);
+    if (index < 0) {
+      map->erase(name);    // the built-in granular styles give way to ours knowingly: no warning
+      regfunc(&plugin, lmp);
+    } else if (plugin_get_info(index)->creator.v1 != plugin.creator.v1) {
+      lmp->error->all(FLERR, "{} style {} is already loaded from another plugin: unload that first", style, name);
+    }
+    (*map)[name] = v1 ? (Creator) v1 : (Creator) v2;
+  }
+
+ private:
+  LAMMPS *lmp;
+  void *handle;
+  lammpsplugin_regfunc regfunc;
+};
+
+}    // namespace
+
+extern "C" __attribute__((visibility("default"))) void dust_register_styles(void *ptr, void *handle, void *regfunc)
+{
+  auto *lmp = (LAMMPS *) ptr;
+  Registry registry(lmp, handle, (lammpsplugin_regfunc) regfunc);
+
+  // with KIND_CLASS defined, a style header holds its macro alone
+
+#define PAIR_CLASS
+#define PairStyle(key, Class) registry.add("pair", #key, create<Class>, nullptr, lmp->force->pair_map)
+#include "dust_style_pair.h"
+#undef PAIR_CLASS
+
+#define FIX_CLASS
+#define FixStyle(key, Class) registry.add("fix", #key, nullptr, create_with_args<Class>, lmp->modify->fix_map)
+#include "dust_style_fix.h"
+#undef FIX_CLASS
+
+#define COMPUTE_CLASS
+#define ComputeStyle(key, Class) \
+  registry.add("compute", #key, nullptr, create_with_args<Class>, lmp->modify->compute_map)
+#include "dust_style_compute.h"
+#undef COMPUTE_CLASS
+
+#define COMMAND_CLASS
+#define CommandStyle(key, Class) registry.add("command", #key, create<Class>, nullptr, lmp->input->command_map)
+#include "dust_style_command.h"
+#undef COMMAND_CLASS
+}
