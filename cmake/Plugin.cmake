@@ -58,6 +58,7 @@ write_includes(dust_style_compute.h ${DUST_compute_HEADERS})
 write_includes(dust_style_command.h ${DUST_command_HEADERS})
 
 add_plugin_module(dust_styles "${DUST_SOURCE_DIR}/plugin/styles.cpp" ${DUST_STYLE_SOURCES} ${granular})
+set_source_files_properties("${DUST_SOURCE_DIR}/plugin/styles.cpp" ${DUST_STYLE_SOURCES} PROPERTIES COMPILE_OPTIONS "-Wall;-Wextra")
 target_include_directories(dust_styles BEFORE PRIVATE "${CMAKE_BINARY_DIR}/styles" "${DUST_SOURCE_DIR}")
 target_compile_definitions(dust_styles PRIVATE LAMMPS_${DUST_SIZES})
 target_link_libraries(dust_styles PRIVATE dust_core)

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <sstream>
 
 using namespace LAMMPS_NS;
@@ -32,7 +33,7 @@ static constexpr double UNSET = -1.0;
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), carrier_radius(0.0), texture_checksum(0.0), state(nullptr), attached(nullptr),
-    window_mass(nullptr), newcomers(true), mine{}, sums_step(-1)
+    window_mass(nullptr), newcomers(true), mine{}, sums_step(-1), under_way_step(-1), open_windows(0)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, "Fix dust/detach needs atoms with radius and mass of their own, such as atom_style sphere");
@@ -50,7 +51,7 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   size_local_cols = NROW;
   restart_global = restart_peratom = create_attribute = 1;
   maxexchange_dynamic = 1;
-  maxexchange = fixed_size();
+  make_room(0);
 
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
   grow_arrays(atom->nmax);
@@ -338,7 +339,7 @@ void FixDustDetach::build()
 
   memory->destroy(attached);
   grow_arrays(atom->nmax);
-  maxexchange = fixed_size();
+  make_room(room / 2);
   adopt();
 
   if (comm->me == 0) {
@@ -392,7 +393,7 @@ void FixDustDetach::init()
     if (std::none_of(fixes.begin(), fixes.end(), inserts))
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
-  sums_step = -1;
+  sums_step = under_way_step = -1;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -440,18 +441,20 @@ void FixDustDetach::adopt()
 void FixDustDetach::post_force(int /*vflag*/)
 {
   const int *const mask = atom->mask;
-  const double *const *const f = atom->f;
   const int nlocal = atom->nlocal;
-  sums_step = -1;
+  const double *f = nlocal ? atom->f[0] : nullptr;
+  sums_step = under_way_step = -1;
 
-  for (int i = 0; i < nlocal; i++) {
+  for (int i = 0; i < nlocal; i++, f += 3) {
+    const bool force = f[0] != 0.0 || f[1] != 0.0 || f[2] != 0.0;
+    if (!force && state[i] < 0) continue;    // free flight
     if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
-    if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0)
+    if (force)
       collide(i);
-    else if (state[i] >= 0)
+    else
       rebound(i);
   }
-  if (update->ntimestep % input.every == 0) close_window();
+  if (open_windows && update->ntimestep % input.every == 0) close_window();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -460,16 +463,14 @@ void FixDustDetach::collide(int i)
 {
   if (state[i] == FREE_FLIGHT) {
     state[i] = start_collision();
-    collisions[state[i]].begin(*functions, atom->v[i]);
+    collisions[state[i]].begin(atom->v[i]);
   }
   Dust::Collision &collision = collisions[state[i]];
   const double per_mass = force->ftm2v / atom->rmass[i];
   const double *f = atom->f[i];
   const double acceleration[3] = {f[0] * per_mass, f[1] * per_mass, f[2] * per_mass};
   if (collision.step(*functions, acceleration, update->dt, attached[i], detached)) record(i);
-  // with room to spare, so that Comm need not enlarge its buffers each time
-  const int size = fixed_size() + collision.packed_size();
-  if (size > maxexchange) maxexchange = fixed_size() + 2 * collision.packed_size();
+  if (collision.packed_size() > room) make_room(collision.packed_size());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -482,8 +483,8 @@ void FixDustDetach::rebound(int i)
   array_atom[i][PEAK_ACCELERATION] = collision.peak_acceleration();
   mine.collisions += 1.0;
   mine.north += collision.lost_north(*functions, atom->v[i], attached[i]);
-  mine.sliding += collision.sliding_grains();
-  mine.rolling += collision.rolling_grains();
+  mine.sliding += collision.sliding_grains(*functions, attached[i]);
+  mine.rolling += collision.rolling_grains(*functions, attached[i]);
   idle.push_back(state[i]);
   state[i] = FREE_FLIGHT;
 }
@@ -544,17 +545,18 @@ void FixDustDetach::record(int i)
     events.push_back(row);
   }
   detached.clear();
+  open_windows = 2;    // this one, and the next to show that nothing more came
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixDustDetach::close_window()
 {
+  open_windows--;
   for (int i = 0; i < atom->nlocal; i++) {
     array_atom[i][WINDOW_MASS] = window_mass[i];
     window_mass[i] = 0.0;
   }
-  if (events.empty() && rows.empty()) return;
   rows.swap(events);
   events.clear();
   row_pointers.clear();
@@ -563,27 +565,36 @@ void FixDustDetach::close_window()
   size_local_rows = static_cast<int>(rows.size());
 }
 
-/* ----------------------------------------------------------------------
-   sums over all ranks; all are whole numbers, or sums of 1, for equal grains: the same on any number of ranks
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 const FixDustDetach::Sums &FixDustDetach::sum_up()
 {
   if (sums_step == update->ntimestep) return sums;
   sums_step = update->ntimestep;
   Sums local = {mine, 0.0};
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
-    local.attached += array_atom[i][ATTACHED];
-    if (state[i] < 0) continue;
-    const Dust::Collision &collision = collisions[state[i]];    // not over: as it stands
-    local.totals.north += collision.lost_north(*functions, atom->v[i], attached[i]);
-    local.totals.sliding += collision.sliding_grains();
-    local.totals.rolling += collision.rolling_grains();
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && state[i] != NO_CARRIER) local.attached += array_atom[i][ATTACHED];
   static_assert(sizeof(Sums) % sizeof(double) == 0, "Sums must hold doubles only");
   MPI_Allreduce(&local, &sums, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
   return sums;
+}
+
+/* ---------------------------------------------------------------------- */
+
+const double *FixDustDetach::sum_under_way()
+{
+  if (under_way_step == update->ntimestep) return sums_under_way;
+  under_way_step = update->ntimestep;
+  double local[3] = {0.0, 0.0, 0.0};
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || state[i] < 0) continue;
+    const Dust::Collision &collision = collisions[state[i]];
+    local[0] += collision.lost_north(*functions, atom->v[i], attached[i]);    // with the velocity so far
+    local[1] += collision.sliding_grains(*functions, attached[i]);
+    local[2] += collision.rolling_grains(*functions, attached[i]);
+  }
+  MPI_Allreduce(local, sums_under_way, 3, MPI_DOUBLE, MPI_SUM, world);
+  return sums_under_way;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -601,12 +612,21 @@ double FixDustDetach::compute_vector(int n)
   const Sums &s = sum_up();
   const Totals &t = s.totals;
   const double grain_mass = functions ? functions->mean_mass() : 0.0;
-  const double *modes = t.modes;
-  const double lost = modes[Dust::NORMAL] + modes[Dust::TANGENTIAL] + modes[Dust::SLIDING] + modes[Dust::ROLLING];
-  const double values[] = {t.initial, s.attached, modes[Dust::NORMAL], modes[Dust::TANGENTIAL], lost - t.north, t.north,
-                           t.weight * grain_mass, t.initial * grain_mass, t.collisions, t.sliding, t.rolling,
-                           modes[Dust::SLIDING], modes[Dust::ROLLING]};
-  return values[n];
+  switch (n) {
+    case 0: return t.initial;
+    case 1: return s.attached;
+    case 2: return t.modes[Dust::NORMAL];
+    case 3: return t.modes[Dust::TANGENTIAL];
+    case 4: return std::accumulate(t.modes, t.modes + Dust::NMODES, 0.0) - compute_vector(5);
+    case 5: return t.north + sum_under_way()[0];
+    case 6: return t.weight * grain_mass;
+    case 7: return t.initial * grain_mass;
+    case 8: return t.collisions;
+    case 9: return t.sliding + sum_under_way()[1];
+    case 10: return t.rolling + sum_under_way()[2];
+    case 11: return t.modes[Dust::SLIDING];
+    default: return t.modes[Dust::ROLLING];
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -660,6 +680,13 @@ int FixDustDetach::fixed_size() const
   return 2 + NCOLUMNS + 1 + (functions ? functions->words() : 0);
 }
 
+// twice what is needed now, so that Comm need not enlarge its buffers each time
+void FixDustDetach::make_room(int size)
+{
+  room = 2 * size;
+  maxexchange = fixed_size() + 1 + room;
+}
+
 int FixDustDetach::packed_size(int i) const
 {
   if (state[i] == NO_CARRIER) return 1;
@@ -699,13 +726,14 @@ void FixDustDetach::unpack(int i, const double *buf)
   std::copy_n(p, static_cast<int>(NCOLUMNS), array_atom[i]);
   p += NCOLUMNS;
   window_mass[i] = *p++;
+  open_windows = 2;
   std::memcpy(attached[i], p, words * sizeof(uint64_t));
   p += words;
   state[i] = FREE_FLIGHT;
   if (colliding) {
     state[i] = start_collision();
-    collisions[state[i]].unpack(*functions, p);
-    maxexchange = std::max(maxexchange, fixed_size() + 2 * collisions[state[i]].packed_size());
+    collisions[state[i]].unpack(p);
+    if (collisions[state[i]].packed_size() > room) make_room(collisions[state[i]].packed_size());
   }
 }
 

@@ -91,16 +91,21 @@ class FixDustDetach : public Fix {
   void collide(int);
   void rebound(int);
 
-  // what this rank has counted since the start, or since it read a restart file
+  // what this rank has counted since the start, or since it read a restart file; whole numbers but for weight, the
+  // mass lost in mean grain masses, which is one for equal grains
   struct Totals {
-    double initial, modes[Dust::NMODES], weight, north, collisions, sliding, rolling;
+    double initial, modes[Dust::NMODES], weight, collisions;
+    double north, sliding, rolling;    // of the collisions that are over
   } mine;
+  // sums over all ranks, and the steps they are of; those that ask each collision under way cost more
   struct Sums {
     Totals totals;
     double attached;
   } sums;
-  bigint sums_step;    // step the sums over all ranks are of
+  double sums_under_way[3];    // north, sliding, rolling
+  bigint sums_step, under_way_step;
   const Sums &sum_up();
+  const double *sum_under_way();
 
   // detachments
   std::vector<Dust::Detachment> detached;              // of one carrier in one step
@@ -108,8 +113,11 @@ class FixDustDetach : public Fix {
   std::vector<std::array<double, NROW>> events, rows;  // of this window and of the last complete one
   std::vector<double *> row_pointers;
   void record(int);
+  int open_windows;    // windows to be closed until all of window_mass and its column are 0 again
   void close_window();
 
+  int room;    // for a collision in what a carrier takes along when it changes ranks
+  void make_room(int);
   int fixed_size() const;
   int packed_size(int) const;
   int pack(int, double *) const;

@@ -17,7 +17,7 @@ using namespace Dust;
 namespace {
 
 constexpr int PATCH = 64;
-constexpr double NEVER = std::numeric_limits<double>::infinity();
+constexpr double INF = std::numeric_limits<double>::infinity();
 constexpr double PI = 3.14159265358979323846;
 
 double dot(const double *a, const double *b)
@@ -25,20 +25,22 @@ double dot(const double *a, const double *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// distance of p from the segment between the origin and q
-double distance_to_segment(const double *p, const double *q)
+// p = lambda q + e with e normal to q; returns lambda and the square of |e|
+struct Split {
+  double lambda, aside2;
+};
+Split split(const double *p, const double *q)
 {
-  const double qq = dot(q, q);
-  const double along = qq > 0.0 ? std::clamp(dot(p, q) / qq, 0.0, 1.0) : 0.0;
-  const double r[3] = {p[0] - along * q[0], p[1] - along * q[1], p[2] - along * q[2]};
-  return std::sqrt(dot(r, r));
+  const double lambda = dot(p, q) / dot(q, q);
+  const double e[3] = {p[0] - lambda * q[0], p[1] - lambda * q[1], p[2] - lambda * q[2]};
+  return {lambda, dot(e, e)};
 }
 
 // true if p lies between the origin and q, to round-off: q is then at least as large in every direction
-bool is_between(const double *p, const double *q)
+bool is_between(const Split &s, double q2)
 {
-  constexpr double ROUND_OFF = 1.0e-12;
-  return distance_to_segment(p, q) <= ROUND_OFF * std::sqrt(dot(q, q));
+  constexpr double ROUND_OFF2 = 1.0e-24;
+  return s.lambda >= 0.0 && s.lambda <= 1.0 && s.aside2 <= ROUND_OFF2 * q2;
 }
 
 // orders grains so that each run of PATCH is a compact patch: halves the set across its longest side, again and again
@@ -96,7 +98,7 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
   for (const Grain &g : texture.grains) mass += mass_of(g) / n;
   if (finest->radius == coarsest->radius) mass = mass_of(*finest);
 
-  least = slow2 = quiet = NEVER;
+  least = slow2 = INF;
   largest = 0.0;
   for (int bit = 0; bit < n; bit++) {
     const Grain &g = texture.grains[grain_of[bit]];
@@ -111,149 +113,232 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
     least = std::min(least, hold[bit]);
     largest = std::max(largest, hold[bit]);
     slow2 = std::min(slow2, hold[bit] * shell[bit]);
-    quiet = std::min(quiet, margin_at_rest(bit));
+  }
+
+  patches.resize(words());
+  for (int p = 0; p < words(); p++) {
+    Patch &patch = patches[p];
+    patch = {{0.0, 0.0, 0.0}, 0.0, INF};
+    const auto grain_at = [&](int k) { return texture.grains[grain_of[p * PATCH + k]].n; };
+    each_bit(all[p], [&](int k) {
+      for (int d = 0; d < 3; d++) patch.centre[d] += grain_at(k)[d] / __builtin_popcountll(all[p]);
+      patch.hold = std::min(patch.hold, hold[p * PATCH + k]);
+    });
+    each_bit(all[p], [&](int k) {
+      const double *n = grain_at(k);
+      const double r[3] = {n[0] - patch.centre[0], n[1] - patch.centre[1], n[2] - patch.centre[2]};
+      patch.radius = std::max(patch.radius, std::sqrt(dot(r, r)));
+    });
   }
 }
 
 /* ----------------------------------------------------------------------
-   each criterion's margin is linear in |g| for a direction of g, and changes by at most 1 (lift-off) or
-   sqrt(1 + k^2) (g_t against k times a function of g_n) per change of g
+   sliding and rolling of Eq. 2
 ------------------------------------------------------------------------- */
 
-double DetachmentFunctions::margin_at_rest(int bit) const
+static double tangential(const double *g, double gn, double nx, double ny, double nz)
 {
-  const double slide = 2.0 * friction / std::sqrt(1.0 + friction * friction);
-  const double roll = lever[bit] / std::sqrt(1.0 + lever[bit] * lever[bit]);
-  return hold[bit] * std::min({1.0, slide, roll});
+  const double t[3] = {g[0] - gn * nx, g[1] - gn * ny, g[2] - gn * nz};
+  return std::sqrt(dot(t, t));
+}
+
+bool DetachmentFunctions::slides(int bit, const double *g) const
+{
+  const double gn = normal(bit, g);
+  return tangential(g, gn, nx[bit], ny[bit], nz[bit]) > friction * std::fabs(2.0 * hold[bit] - gn);
+}
+
+bool DetachmentFunctions::rolls(int bit, const double *g) const
+{
+  const double gn = normal(bit, g);
+  return tangential(g, gn, nx[bit], ny[bit], nz[bit]) > lever[bit] * std::fabs(hold[bit] - gn);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void Collision::begin(const DetachmentFunctions &functions, const double *velocity)
+void Collision::begin(const double *velocity)
 {
   std::copy_n(velocity, 3, v0);
-  time = path = 0.0;
+  time = 0.0;
   nslid = nrolled = 0;
-  std::fill_n(seen, 3, 0.0);
-  next_due = functions.quiet;
   start.clear();
   extreme.clear();
   peak = -1;
+  peak2 = 0.0;
+  window.along = -1.0;
+  window.width = 1.0e-3;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void Collision::wake(const DetachmentFunctions &functions, const uint64_t *attached)
-{
-  start.assign(attached, attached + functions.words());
-  slid.assign(functions.words(), 0);
-  rolled.assign(functions.words(), 0);
-  due.assign(functions.words(), functions.quiet);
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool Collision::step(const DetachmentFunctions &functions, const double *acceleration, double dt, uint64_t *attached,
+bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, uint64_t *attached,
                      std::vector<Detachment> &detached)
 {
   time += dt;
-  remember(acceleration);
-
-  const double g[3] = {-acceleration[0], -acceleration[1], -acceleration[2]};
-  const double beyond = distance_to_segment(g, seen);
-  if (path + beyond < next_due) return false;
-  if (start.empty()) wake(functions, attached);
-
-  // [0, g] lies within beyond of what has been seen, as distance from a segment is convex
-  path += beyond;
-  std::copy_n(g, 3, seen);
-  const size_t before = detached.size();
-  next_due = NEVER;
-  for (int patch = 0; patch < functions.words(); patch++) {
-    if (due[patch] <= path) look(functions, patch, g, attached[patch], detached);
-    next_due = std::min(next_due, due[patch]);
+  const double size2 = dot(a, a);
+  Split s = {INF, INF};
+  if (peak >= 0 && size2 <= peak2) {
+    s = split(a, &extreme[3 * peak]);
+    if (is_between(s, peak2)) return false;
   }
+  const double g[3] = {-a[0], -a[1], -a[2]};
+  const size_t before = detached.size();
+  if (df.criteria.ibrahim)
+    check_all(df, g, attached, detached);
+  else if (size2 > df.least * df.least) {
+    const double spare = (1.0 - s.lambda) * df.least;
+    if (!(s.lambda >= 0.0 && spare >= 0.0 && s.aside2 <= spare * spare)) lift_off(df, g, attached, detached);
+  }
+  remember(a, size2);
   return detached.size() > before;
 }
 
 /* ----------------------------------------------------------------------
-   Eq. 2 and lift-off normal for one patch
+   lift-off normal
 ------------------------------------------------------------------------- */
 
-void Collision::look(const DetachmentFunctions &df, int patch, const double *g, uint64_t &attached,
-                     std::vector<Detachment> &detached)
+void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_t *attached,
+                         std::vector<Detachment> &detached)
 {
-  if (!attached) {
-    due[patch] = NEVER;
-    return;
-  }
-  const int base = patch * PATCH;
-  const double *nx = &df.nx[base], *ny = &df.ny[base], *nz = &df.nz[base];
-  double gn[PATCH], gt[PATCH];
-  for (int k = 0; k < PATCH; k++) gn[k] = g[0] * nx[k] + g[1] * ny[k] + g[2] * nz[k];
+  if (start.empty()) start.assign(attached, attached + df.words());
 
-  const double mu = df.friction;
-  const uint64_t here = attached;
-  const uint64_t still = here & ~(slid[patch] & rolled[patch]);    // grains that have something to meet but lift-off
-  if (still) {
-    for (int k = 0; k < PATCH; k++) {
-      const double tx = g[0] - gn[k] * nx[k], ty = g[1] - gn[k] * ny[k], tz = g[2] - gn[k] * nz[k];
-      gt[k] = std::sqrt(tx * tx + ty * ty + tz * tz);
-    }
-    each_bit(still, [&](int k) {
-      const uint64_t bit = uint64_t(1) << k;
-      const double c = df.hold[base + k];
-      if (!(slid[patch] & bit) && gt[k] > mu * std::fabs(2.0 * c - gn[k])) {
-        slid[patch] |= bit;
-        nslid++;
-      }
-      if (!(rolled[patch] & bit) && gt[k] > df.lever[base + k] * std::fabs(c - gn[k])) {
-        rolled[patch] |= bit;
-        nrolled++;
-      }
+  double along = dot(g, window.axis);
+  const double e[3] = {g[0] - along * window.axis[0], g[1] - along * window.axis[1], g[2] - along * window.axis[2]};
+  if (!(along >= 0.0 && along <= window.along && dot(e, e) <= window.aside * window.aside)) {
+    const bool sidewards = window.along >= 0.0 && along <= window.along;
+    window.width = std::clamp(window.width * (sidewards ? 2.0 : 0.5), 1.0e-4, 0.1);
+    open_window(df, g, attached);
+    along = dot(g, window.axis);
+  }
+
+  for (; window.next < window.candidates.size() && window.candidates[window.next].from <= along; window.next++)
+    window.close.push_back(window.candidates[window.next].bit);
+  for (size_t k = 0; k < window.close.size();) {
+    const int bit = window.close[k];
+    if (df.normal(bit, g) > df.hold[bit]) {
+      leave(df, {bit, NORMAL, {}}, g, attached, detached);
+      window.close[k] = window.close.back();
+      window.close.pop_back();
+    } else
+      k++;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   window around g: about 500 grains of 4500 to come, whatever |g|, as the number that holds goes with 1/|g|
+------------------------------------------------------------------------- */
+
+void Collision::open_window(const DetachmentFunctions &df, const double *g, const uint64_t *attached)
+{
+  constexpr double ROUND_OFF = 1.0e-9;
+  const double size = std::sqrt(dot(g, g));
+  for (int d = 0; d < 3; d++) window.axis[d] = g[d] / size;
+  window.along = size * (1.0 + 0.3 * size / df.least);
+  window.aside = size * window.width;
+  window.candidates.clear();
+  window.close.clear();
+  window.next = 0;
+  const double most = window.along * (1.0 + ROUND_OFF), aside = window.aside * (1.0 + ROUND_OFF);
+
+  for (int p = 0; p < df.words(); p++) {
+    const auto &patch = df.patches[p];
+    if (!attached[p] || std::max(0.0, most * (dot(window.axis, patch.centre) + patch.radius)) + aside <= patch.hold)
+      continue;
+    each_bit(attached[p], [&](int k) {
+      const int bit = p * PATCH + k;
+      const double u = df.normal(bit, window.axis), short_of = df.hold[bit] - aside;
+      if (std::max(0.0, most * u) <= short_of) return;
+      window.candidates.push_back({short_of > 0.0 ? short_of / u * (1.0 - ROUND_OFF) : 0.0, bit});
     });
   }
+  std::sort(window.candidates.begin(), window.candidates.end(),
+            [](const Window::Candidate &a, const Window::Candidate &b) { return a.from < b.from; });
+}
 
-  double margin = NEVER;
-  each_bit(here, [&](int k) {
-    const uint64_t bit = uint64_t(1) << k;
-    const double c = df.hold[base + k];
-    Mode mode = NMODES;
-    if (gn[k] > c)
-      mode = NORMAL;
-    else if (df.criteria.ibrahim && (slid[patch] & bit))
-      mode = SLIDING;
-    else if (df.criteria.ibrahim && (rolled[patch] & bit))
-      mode = ROLLING;
-    if (mode != NMODES) {
-      attached &= ~bit;
-      detached.push_back({base + k, mode, {0.0, 0.0, 0.0}});
-      return;
-    }
-    // least margin on [0, g]: that at g or that at rest
-    margin = std::min({margin, c, c - gn[k]});
-    if (!(slid[patch] & bit))
-      margin = std::min(margin, std::min(2.0 * mu * c, mu * (2.0 * c - gn[k]) - gt[k]) / std::sqrt(1.0 + mu * mu));
-    if (!(rolled[patch] & bit)) {
-      const double lever = df.lever[base + k];
-      margin = std::min(margin, std::min(lever * c, lever * (c - gn[k]) - gt[k]) / std::sqrt(1.0 + lever * lever));
-    }
-  });
-  constexpr double SAFETY = 1.0 - 1.0e-9;    // against round-off in path and margin
-  due[patch] = path + SAFETY * margin;
+/* ----------------------------------------------------------------------
+   all criteria on every grain: few are left to check soon after the first steps, as rolling needs least
+------------------------------------------------------------------------- */
+
+void Collision::check_all(const DetachmentFunctions &df, const double *g, uint64_t *attached,
+                          std::vector<Detachment> &detached)
+{
+  if (start.empty()) start.assign(attached, attached + df.words());
+  for (int p = 0; p < df.words(); p++)
+    each_bit(attached[p], [&](int k) {
+      const int bit = p * PATCH + k;
+      if (df.normal(bit, g) > df.hold[bit])
+        leave(df, {bit, NORMAL, {}}, g, attached, detached);
+      else if (df.slides(bit, g))
+        leave(df, {bit, SLIDING, {}}, g, attached, detached);
+      else if (df.rolls(bit, g))
+        leave(df, {bit, ROLLING, {}}, g, attached, detached);
+    });
+}
+
+/* ----------------------------------------------------------------------
+   g = inertia force of the current step, which remember() has not seen yet, or null
+------------------------------------------------------------------------- */
+
+void Collision::leave(const DetachmentFunctions &df, const Detachment &grain, const double *g, uint64_t *attached,
+                      std::vector<Detachment> &detached)
+{
+  const int bit = grain.bit;
+  attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
+  detached.push_back(grain);
+  nslid += (g && df.slides(bit, g)) || once([&](const double *earlier) { return df.slides(bit, earlier); });
+  nrolled += (g && df.rolls(bit, g)) || once([&](const double *earlier) { return df.rolls(bit, earlier); });
+}
+
+/* ----------------------------------------------------------------------
+   true if the inertia force of any step so far passes a test that is convex in it
+------------------------------------------------------------------------- */
+
+template <typename Test> bool Collision::once(Test test) const
+{
+  for (size_t i = extreme.size(); i > 0; i -= 3) {
+    const double g[3] = {-extreme[i - 3], -extreme[i - 2], -extreme[i - 1]};
+    if (test(g)) return true;
+  }
+  return false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int Collision::sliding_grains(const DetachmentFunctions &df, const uint64_t *attached) const
+{
+  int n = nslid;
+  for (int p = 0; p < df.words(); p++)
+    each_bit(attached[p], [&](int k) { n += once([&](const double *g) { return df.slides(p * PATCH + k, g); }); });
+  return n;
+}
+
+int Collision::rolling_grains(const DetachmentFunctions &df, const uint64_t *attached) const
+{
+  int n = nrolled;
+  for (int p = 0; p < df.words(); p++)
+    each_bit(attached[p], [&](int k) { n += once([&](const double *g) { return df.rolls(p * PATCH + k, g); }); });
+  return n;
 }
 
 /* ----------------------------------------------------------------------
    keeps accelerations that no other one exceeds in every direction; straight impacts and steady sliding keep one
 ------------------------------------------------------------------------- */
 
-void Collision::remember(const double *a)
+void Collision::remember(const double *a, double size2)
 {
   int n = static_cast<int>(extreme.size() / 3);
-  if (n && (is_between(a, &extreme[3 * peak]) || is_between(a, &extreme[3 * (n - 1)]))) return;
-  for (; n && is_between(&extreme[3 * (n - 1)], a); n--) extreme.resize(3 * (n - 1));
-  extreme.insert(extreme.end(), a, a + 3);
-  if (peak < 0 || peak >= n || dot(a, a) > dot(&extreme[3 * peak], &extreme[3 * peak])) peak = n;
+  const auto covers = [](const double *q, double q2, const double *p) { return is_between(split(p, q), q2); };
+  if (n > peak + 1) {    // step() has compared a with the peak
+    const double *last = &extreme[3 * (n - 1)];
+    if (covers(last, dot(last, last), a)) return;
+  }
+  while (n && covers(a, size2, &extreme[3 * (n - 1)])) n--;
+  extreme.resize(3 * (n + 1));
+  std::copy_n(a, 3, &extreme[3 * n]);
+  if (size2 > peak2 || peak >= n) {
+    peak = n;
+    peak2 = size2;
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -269,7 +354,7 @@ double Collision::largest_along(const double *n) const
 
 double Collision::peak_acceleration() const
 {
-  return peak < 0 ? 0.0 : std::sqrt(dot(&extreme[3 * peak], &extreme[3 * peak]));
+  return std::sqrt(peak2);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -279,7 +364,7 @@ bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint6
 {
   const double dv[3] = {v0[0] - velocity[0], v0[1] - velocity[1], v0[2] - velocity[2]};
   if (df.criteria.tangential == Criteria::OFF || dot(dv, dv) <= df.slow2) return false;
-  if (start.empty()) wake(df, attached);
+  if (start.empty()) start.assign(attached, attached + df.words());
 
   const double mu = df.criteria.tangential == Criteria::ESTIMATE ? df.friction : 0.0;
   const size_t before = detached.size();
@@ -303,8 +388,7 @@ bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint6
       const double vt2_left = left(largest_along(n));
       if (vt2_left <= needed) return;
       const double kept = std::sqrt(vt2_left) / speed;
-      attached[patch] &= ~(uint64_t(1) << k);
-      detached.push_back({bit, TANGENTIAL, {kept * vt[0], kept * vt[1], kept * vt[2]}});
+      leave(df, {bit, TANGENTIAL, {kept * vt[0], kept * vt[1], kept * vt[2]}}, nullptr, attached, detached);
     });
   }
   return detached.size() > before;
@@ -325,55 +409,35 @@ int Collision::lost_north(const DetachmentFunctions &df, const double *velocity,
 }
 
 /* ----------------------------------------------------------------------
-   v0, time, counts, seen, path, next_due, peak, sizes; then masks and due of each patch; then extreme
+   v0, time, counts, peak, sizes; then start and extreme. The window is opened anew, which changes no result.
 ------------------------------------------------------------------------- */
 
-static constexpr int PACKED_SCALARS = 14;
+static constexpr int PACKED_SCALARS = 9;
 
 int Collision::packed_size() const
 {
-  return static_cast<int>(PACKED_SCALARS + 4 * start.size() + extreme.size());
+  return static_cast<int>(PACKED_SCALARS + start.size() + extreme.size());
 }
 
 void Collision::pack(double *buf) const
 {
-  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), seen[0], seen[1], seen[2], path, next_due,
-                   double(peak), double(start.size()), double(extreme.size())})
+  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), double(peak), double(start.size()),
+                   double(extreme.size())})
     *buf++ = x;
-  if (!start.empty()) {
-    for (const auto *mask : {&start, &slid, &rolled}) {
-      std::memcpy(buf, mask->data(), mask->size() * sizeof(uint64_t));
-      buf += mask->size();
-    }
-    buf = std::copy(due.begin(), due.end(), buf);
-  }
-  std::copy(extreme.begin(), extreme.end(), buf);
+  std::memcpy(buf, start.data(), start.size() * sizeof(uint64_t));
+  std::copy(extreme.begin(), extreme.end(), buf + start.size());
 }
 
-int Collision::unpack(const DetachmentFunctions &functions, const double *buf)
+void Collision::unpack(const double *buf)
 {
-  const double *p = buf;
-  for (double &x : v0) x = *p++;
-  time = *p++;
-  nslid = static_cast<int>(*p++);
-  nrolled = static_cast<int>(*p++);
-  for (double &x : seen) x = *p++;
-  path = *p++;
-  next_due = *p++;
-  peak = static_cast<int>(*p++);
-  const bool awake = *p++ > 0.0;
-  const auto nextreme = static_cast<size_t>(*p++);
-  start.clear();
-  if (awake) {
-    const size_t words = functions.words();
-    for (auto *mask : {&start, &slid, &rolled}) {
-      mask->resize(words);
-      std::memcpy(mask->data(), p, words * sizeof(uint64_t));
-      p += words;
-    }
-    due.assign(p, p + words);
-    p += words;
-  }
-  extreme.assign(p, p + nextreme);
-  return static_cast<int>(p + nextreme - buf);
+  begin(buf);
+  time = buf[3];
+  nslid = static_cast<int>(buf[4]);
+  nrolled = static_cast<int>(buf[5]);
+  peak = static_cast<int>(buf[6]);
+  start.resize(static_cast<size_t>(buf[7]));
+  std::memcpy(start.data(), buf + PACKED_SCALARS, start.size() * sizeof(uint64_t));
+  const double *p = buf + PACKED_SCALARS + start.size();
+  extreme.assign(p, p + static_cast<size_t>(buf[8]));
+  if (peak >= 0) peak2 = dot(&extreme[3 * peak], &extreme[3 * peak]);
 }

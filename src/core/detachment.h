@@ -20,7 +20,7 @@
      lift-off  g_n > c,    sliding  g_t > mu_f |2 c - g_n|,    rolling  g_t R_d > |c - g_n| a0.
 
    Attachment is one bit a grain. The bits are in the order of compact patches of 64 grains, one 64-bit word a patch, so
-   that the grains that can detach in a step share few words. */
+   that whole patches can be passed over. */
 
 namespace Dust {
 
@@ -69,7 +69,6 @@ class DetachmentFunctions {
   double mass;
   double least, largest;            // of hold
   double slow2;                     // no tangential lift-off below this square of a velocity
-  double quiet;                     // no criterion of Eq. 2 is met by any grain while |g| is below
   std::vector<uint64_t> all;        // bits that hold a grain: all but the last ones of the last word
   std::vector<int> grain_of;        // by bit
   // by bit, whole patches
@@ -78,9 +77,15 @@ class DetachmentFunctions {
   std::vector<double> lever;        // a0/R_d
   std::vector<double> shell;        // |r_pd| = R_p + R_d
   std::vector<double> relative_mass;
+  // by patch: centre, radius (chord) and least hold of its grains
+  struct Patch {
+    double centre[3], radius, hold;
+  };
+  std::vector<Patch> patches;
 
-  // how far |g| can grow from 0 before a grain meets anything
-  double margin_at_rest(int bit) const;
+  double normal(int bit, const double *g) const { return g[0] * nx[bit] + g[1] * ny[bit] + g[2] * nz[bit]; }
+  bool slides(int bit, const double *g) const;
+  bool rolls(int bit, const double *g) const;
 };
 
 /*! One grain that has just left */
@@ -92,13 +97,17 @@ struct Detachment {
 
 /*! Collision of one carrier, from the first step with a contact force to the first without
  *
- * In most steps no grain can change: every criterion is met by no more grains at an inertia force lambda g, lambda <= 1,
- * than at g, and changes by at most a known multiple of a change of g. So a patch needs no look before the force has
- * moved farther away from all it has been seen at, [0, g], than the patch's grain closest to a criterion allows. */
+ * In most steps no grain can change, and little is done in the others:
+ * - A grain that holds at q holds at lambda q + e too if lambda <= 1 and |e| <= (1 - lambda) c: unloading needs no look.
+ * - While g stays in a window, no farther than S along an axis and E from it, only those grains can lift off that would
+ *   at S with E to help. They are listed by the force along the axis from which each could, and each step sees only the
+ *   head of that list. A window is opened where g leaves the last one.
+ * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
+ *   holds, g_t + k g_n is a convex function of g, so the accelerations on the hull of the history decide. */
 class Collision {
  public:
   /*! Starts with the velocity before the first step that has a contact force */
-  void begin(const DetachmentFunctions &functions, const double *velocity);
+  void begin(const double *velocity);
 
   /*! One time step: Eq. 2 and lift-off normal
    *  \param acceleration  contact force / carrier mass
@@ -118,31 +127,46 @@ class Collision {
 
   double duration() const { return time; }           //!< of the steps so far
   double peak_acceleration() const;           //!< largest |contact acceleration| so far
-  int sliding_grains() const { return nslid; }       //!< that met the sliding criterion of Eq. 2
-  int rolling_grains() const { return nrolled; }
+  /*! Grains that have met the sliding (rolling) criterion of Eq. 2 since begin() */
+  int sliding_grains(const DetachmentFunctions &functions, const uint64_t *attached) const;
+  int rolling_grains(const DetachmentFunctions &functions, const uint64_t *attached) const;
 
   // transfer to another rank and restart, as numbers
   int packed_size() const;
   void pack(double *buf) const;
-  int unpack(const DetachmentFunctions &functions, const double *buf);
+  void unpack(const double *buf);
 
  private:
   double v0[3];
   double time;
-  int nslid, nrolled;
-  // made when the first grain could change: attached at the start of the collision; have met a criterion of Eq. 2
-  std::vector<uint64_t> start, slid, rolled;
-  // where the inertia force has been: a patch is due when the path of its seen range has come to due[patch]
-  double seen[3], path, next_due;
-  std::vector<double> due;
-  std::vector<double> extreme;    // x y z of the accelerations that can be largest in some direction
-  int peak;                       // which of them is largest
+  int nslid, nrolled;               // of the grains that have left
+  std::vector<uint64_t> start;      // attached at begin(), kept from when the first grain could leave
+  std::vector<double> extreme;      // x y z of accelerations that no other one exceeds in every direction
+  int peak;                         // which of them is largest
+  double peak2;                     // square of its size
 
-  void wake(const DetachmentFunctions &functions, const uint64_t *attached);
-  void look(const DetachmentFunctions &functions, int patch, const double *g, uint64_t &attached,
-            std::vector<Detachment> &detached);
-  void remember(const double *acceleration);
+  struct Window {
+    double axis[3], along, aside;    // S = along, E = aside
+    double width;                    // E/|g| for the next window: wider if g left this one sidewards
+    struct Candidate {
+      double from;    // force along the axis from which the grain could lift off
+      int bit;
+    };
+    std::vector<Candidate> candidates;    // by from
+    size_t next;                          // first that cannot lift off yet
+    std::vector<int> close;               // could lift off now
+  } window;
+
+  void open_window(const DetachmentFunctions &functions, const double *g, const uint64_t *attached);
+  void lift_off(const DetachmentFunctions &functions, const double *g, uint64_t *attached,
+                std::vector<Detachment> &detached);
+  void check_all(const DetachmentFunctions &functions, const double *g, uint64_t *attached,
+                 std::vector<Detachment> &detached);
+  void leave(const DetachmentFunctions &functions, const Detachment &grain, const double *g, uint64_t *attached,
+             std::vector<Detachment> &detached);
+  void remember(const double *acceleration, double size2);
   double largest_along(const double *n) const;
+  template <typename Test> bool once(Test test) const;
 };
 
 }    // namespace Dust

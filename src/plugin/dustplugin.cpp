@@ -12,6 +12,7 @@
 #include "library.h"
 #include "lmptype.h"
 
+#include <cstring>
 #include <dlfcn.h>
 #include <string>
 
@@ -50,6 +51,17 @@ std::string difference(void *lmp)
   return "";
 }
 
+// whether the host has the package compiled in (lmp-dust); what comes from a plugin is in LAMMPS' list of plugins
+bool compiled_in(void *lmp)
+{
+  static constexpr const char *STYLE = "fix", *NAME = "dust/detach";
+  if (!lammps_has_style(lmp, STYLE, NAME)) return false;
+  char style[64], name[64];
+  for (int i = 0; i < lammps_plugin_count(); ++i)
+    if (lammps_plugin_name(i, style, name, sizeof(name)) && !strcmp(style, STYLE) && !strcmp(name, NAME)) return false;
+  return true;
+}
+
 // Ends the deck as LAMMPS' own errors do: one message on screen and in the log, from rank 0, then the exception
 // that both `lmp` and the library interface expect. It is thrown from here, and the message printed by a command,
 // because calling the host's Error class would need the class layouts that are in doubt.
@@ -67,6 +79,12 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
 {
   const std::string why = difference(lmp);
   if (!why.empty()) refuse(lmp, why + "; build the plugin from the source of this LAMMPS (-D LAMMPS_SOURCE_DIR=...)");
+
+  // so that one deck, with its line `plugin load`, runs on a stock LAMMPS and on lmp-dust
+  if (compiled_in(lmp)) {
+    lammps_command(lmp, "print 'dustplugin.so is not needed: this LAMMPS has the package DUST compiled in'");
+    return;
+  }
 
   // Beside this file, wherever it was installed. Never closed: LAMMPS closes a plugin when the first of several
   // instances is through with it (4Feb2025), while others still use its styles.

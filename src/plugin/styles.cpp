@@ -53,37 +53,49 @@ class Registry {
   {
   }
 
+  // styles made from the LAMMPS instance alone: pair, command
+  template <class Creator>
+  void add(const char *style, const char *name, lammpsplugin_factory1 *create, std::map<std::string, Creator> *map)
+  {
+    lammpsplugin_t plugin = {};
+    plugin.creator.v1 = create;
+    publish(plugin, style, name, (Creator) create, map);
+  }
+
+  // styles made from the arguments of their command too: fix, compute
+  template <class Creator>
+  void add(const char *style, const char *name, lammpsplugin_factory2 *create, std::map<std::string, Creator> *map)
+  {
+    lammpsplugin_t plugin = {};
+    plugin.creator.v2 = create;
+    publish(plugin, style, name, (Creator) create, map);
+  }
+
+ private:
   // Two lists know a plugin's styles: one for the process (`plugin list`, restored by 4Jul2026 in every new instance
   // and after `clear`) and the map of each instance, which decides what a deck gets. LAMMPS ignores a
   // style that the process knows already, which on 4Feb2025 leaves a second instance without it; so the first is
   // filled once and the second always.
   template <class Creator>
-  void add(const char *style, const char *name, lammpsplugin_factory1 *v1, lammpsplugin_factory2 *v2,
-           std::map<std::string, Creator> *map)
+  void publish(lammpsplugin_t &plugin, const char *style, const char *name, Creator create,
+               std::map<std::string, Creator> *map)
   {
-    lammpsplugin_t plugin = {};
-    plugin.version = LAMMPS_VERSION;
-    plugin.style = style;
-    plugin.name = name;
-    plugin.info = remember(std::string(style) + " style " + name + " of package DUST");
-    plugin.author = "the DUST developers";
-    plugin.handle = handle;
-    if (v1)
-      plugin.creator.v1 = v1;
-    else
-      plugin.creator.v2 = v2;
-
     const int index = plugin_find(style, name);
     if (index < 0) {
+      plugin.version = LAMMPS_VERSION;
+      plugin.style = style;
+      plugin.name = name;
+      plugin.info = remember(std::string(style) + " style " + name + " of package DUST");
+      plugin.author = "the DUST developers";
+      plugin.handle = handle;
       map->erase(name);    // the built-in granular styles give way to ours knowingly: no warning
       regfunc(&plugin, lmp);
     } else if (plugin_get_info(index)->creator.v1 != plugin.creator.v1) {
       lmp->error->all(FLERR, "{} style {} is already loaded from another plugin: unload that first", style, name);
     }
-    (*map)[name] = v1 ? (Creator) v1 : (Creator) v2;
+    (*map)[name] = create;
   }
 
- private:
   LAMMPS *lmp;
   void *handle;
   lammpsplugin_regfunc regfunc;
@@ -99,23 +111,23 @@ extern "C" __attribute__((visibility("default"))) void dust_register_styles(void
   // with KIND_CLASS defined, a style header holds its macro alone
 
 #define PAIR_CLASS
-#define PairStyle(key, Class) registry.add("pair", #key, create<Class>, nullptr, lmp->force->pair_map)
+#define PairStyle(key, Class) registry.add("pair", #key, create<Class>, lmp->force->pair_map)
 #include "dust_style_pair.h"
 #undef PAIR_CLASS
 
 #define FIX_CLASS
-#define FixStyle(key, Class) registry.add("fix", #key, nullptr, create_with_args<Class>, lmp->modify->fix_map)
+#define FixStyle(key, Class) registry.add("fix", #key, create_with_args<Class>, lmp->modify->fix_map)
 #include "dust_style_fix.h"
 #undef FIX_CLASS
 
 #define COMPUTE_CLASS
 #define ComputeStyle(key, Class) \
-  registry.add("compute", #key, nullptr, create_with_args<Class>, lmp->modify->compute_map)
+  registry.add("compute", #key, create_with_args<Class>, lmp->modify->compute_map)
 #include "dust_style_compute.h"
 #undef COMPUTE_CLASS
 
 #define COMMAND_CLASS
-#define CommandStyle(key, Class) registry.add("command", #key, create<Class>, nullptr, lmp->input->command_map)
+#define CommandStyle(key, Class) registry.add("command", #key, create<Class>, lmp->input->command_map)
 #include "dust_style_command.h"
 #undef COMMAND_CLASS
 }

@@ -25,7 +25,7 @@ from .session import lammps_session
 from .texture import Texture, make_texture, read_texture
 
 #: width and height of the drawing, pixels
-SIZE = 1200
+SIZE = 900
 
 
 @dataclass(frozen=True)
@@ -122,8 +122,8 @@ def _render(texture: Texture, kinds: NDArray[np.int64], palette: Sequence[Kind],
         modify = " ".join(f"color {colour}" for colour in colours)
         modify += " acolor 1 carrier " + " ".join(f"acolor {i + 2} kind{i}" for i in range(len(palette)))
         lmp.command(
-            f'write_dump all image "{image}" type radius size {SIZE} {SIZE} view 122 25 up 0 0 1 zoom 1.62 '
-            f"box no 0.0 axes no 0.0 0.0 shiny 0.15 fsaa yes ssao yes 4711 0.7 modify {modify} backcolor white"
+            f'write_dump all image "{image}" type diameter size {SIZE} {SIZE} view 122 25 up 0 0 1 zoom 1.62 '
+            f"box no 0.0 axes no 0.0 0.0 shiny 0.15 fsaa yes ssao yes 4711 0.15 modify {modify} backcolor white"
         )
 
 

@@ -12,7 +12,8 @@ from .places import find_plugin, lammps_module
 
 FIX_STYLE = "dust/detach"
 
-_QUIET = ("-log", "none", "-screen", "none", "-nocite", "-echo", "none")
+#: options that keep LAMMPS from writing to the screen or a log file
+QUIET = ("-log", "none", "-screen", "none", "-nocite", "-echo", "none")
 
 
 @contextmanager
@@ -27,7 +28,7 @@ def lammps_session(variables: Mapping[str, Any] | None = None, comm: Any = None)
         LammpsMissing: LAMMPS or the plugin cannot be found or loaded.
         InvalidInput: LAMMPS refuses a command of the block; its message without the place in LAMMPS' source.
     """
-    arguments = list(_QUIET)
+    arguments = list(QUIET)
     for name, value in (variables or {}).items():
         arguments += ["-var", name, f"{value!r}" if isinstance(value, float) else str(value)]
     module = lammps_module()

@@ -1,0 +1,5 @@
+"""``python -m dustdetach``: the command."""
+
+from .cli import main
+
+raise SystemExit(main())
