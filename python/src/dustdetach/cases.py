@@ -11,7 +11,10 @@ from .errors import InvalidInput
 from .impact import PARAMETERS, Impact
 
 #: impact speeds of both figures, m/s: dense where the near side lets go (1-4) and the far side begins (5-8)
-SPEEDS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 5.5, 6.0, 6.5, 7.0, 7.5, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0)
+SPEEDS = (
+    *(0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0, 6.5, 7.0, 7.5, 8.0),
+    *(9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 16.0, 18.0, 20.0),
+)
 RESTITUTIONS = (0.5, 0.7, 0.9)
 ANGLES = (15.0, 30.0, 45.0, 60.0, 75.0, 90.0)
 

@@ -84,7 +84,9 @@ def _parser() -> argparse.ArgumentParser:
     _add_method(impact)
     for name in _HELP:
         _add_parameter(impact, name, required=name == "speed")
-    impact.add_argument("--rotation", action=argparse.BooleanOptionalAction, default=False, help="follow the carrier's spin")
+    impact.add_argument(
+        "--rotation", action=argparse.BooleanOptionalAction, default=False, help="follow the carrier's spin"
+    )
     impact.add_argument("--json", action="store_true", help="print one JSON object")
     impact.add_argument("--picture", type=Path, metavar="PNG", help="draw the carrier after the impact")
 
@@ -195,14 +197,14 @@ def _sweep(options: argparse.Namespace, speaks: bool) -> int:
 
 
 class _Progress:
-    """A line on standard error: rewritten on a terminal, else a new one each twentieth of the way."""
+    """A line on standard error: rewritten on a terminal, else a new one each tenth of the way."""
 
     def __init__(self) -> None:
         self._terminal = sys.stderr.isatty()
         self._told = -1
 
     def __call__(self, done: int, total: int, left: float) -> None:
-        part = 20 * done // max(total, 1)
+        part = 10 * done // max(total, 1)
         line = f"{done}/{total} cases, {left:.0f} s left"
         if self._terminal:
             print(f"\r{line}\033[K", end="\n" if done == total else "", file=sys.stderr, flush=True)

@@ -58,14 +58,14 @@ def examine() -> list[Finding]:
 
 
 def _lammps(lmp: Any) -> list[Finding]:
-    config = _config(lmp)
+    info = _info(lmp)
     version = lmp.version()
     findings = [
         Finding("LAMMPS version", f"{version}")
         if version >= OLDEST_LAMMPS
         else Finding("LAMMPS version", f"{version} is too old: {OLDEST_LAMMPS} or newer is needed", ok=False),
-        Finding("MPI", _line(config, "MPI v")),
-        Finding("FFT", _line(config, "FFT library")),
+        Finding("MPI", _line(info, "MPI version: ")),
+        Finding("FFT", _line(info, "FFT library = ")),
     ]
     if not lmp.has_package("GRANULAR"):
         findings.append(Finding("packages", "LAMMPS lacks GRANULAR; run ./bootstrap build", ok=False))
@@ -73,7 +73,9 @@ def _lammps(lmp: Any) -> list[Finding]:
     try:
         load_plugin(lmp)
         findings.append(
-            Finding("plugin", "not needed, the package DUST is compiled in" if compiled_in else f"{find_plugin()}, loads")
+            Finding(
+                "plugin", "not needed, the package DUST is compiled in" if compiled_in else f"{find_plugin()}, loads"
+            )
         )
     except LammpsMissing as error:
         findings.append(Finding("plugin", str(error), ok=False))
@@ -82,17 +84,17 @@ def _lammps(lmp: Any) -> list[Finding]:
     return findings
 
 
-def _config(lmp: Any) -> list[str]:
+def _info(lmp: Any) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "config"
-        lmp.command(f'info config out overwrite "{path}"')
+        path = Path(folder) / "info"
+        lmp.command(f'info communication fft out overwrite "{path}"')
         return path.read_text().splitlines()
 
 
 def _line(lines: list[str], start: str) -> str:
     for line in lines:
         if line.strip().startswith(start):
-            return line.strip().removeprefix(f"{start} ").removeprefix("= ").removeprefix(":").strip()
+            return line.strip().removeprefix(start)
     return "none"
 
 

@@ -13,6 +13,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .errors import InvalidInput
 from .files import replace_file
@@ -20,8 +21,10 @@ from .result import Result, read_csv
 from .sweeping import TABLE
 
 #: colours that colour-blind readers can tell apart (Okabe and Ito 2008)
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+#: for more curves than these: from dark to light in the order of the curves, in a map even to the eye
+COLOUR_MAP = "viridis"
 FORMATS = ("png", "svg")
 
 _STYLE = {
@@ -61,6 +64,7 @@ _LABELS = {
 }
 
 Curve = tuple[float | str | bool, ...]
+Colour = str | tuple[float, float, float, float]
 
 
 def plot(folder: Path) -> list[Path]:
@@ -111,12 +115,14 @@ def draw(results: list[Result], stem: Path) -> list[Path]:
             axes[name].set_title(title)
             axes[name].set_ylim(0, top * 1.04)
             axes[name].set_xlim(0, max(result.speed for result in results) * 1.02)
+            axes[name].xaxis.set_major_locator(MaxNLocator(11 if name == "all" else 5, steps=[1, 2, 5, 10]))
+            axes[name].yaxis.set_major_locator(MultipleLocator(top / 5))
         axes["all"].set_ylabel("Dispersion ratio (detached / initial dust mass)")
         axes["all"].set_xlabel("Impact speed $v_p$ (m/s)")
         axes["south"].set_xlabel("Impact speed $v_p$ (m/s)")
         axes["north"].tick_params(labelbottom=False)
         figure.legend(
-            handles=_legend(curves, results), loc="outside upper center", ncols=4, handlelength=2.2, columnspacing=1.6
+            handles=_legend(curves, results), loc="outside upper center", ncols=6, handlelength=2, columnspacing=1.3
         )
         written = []
         for suffix in FORMATS:
@@ -151,8 +157,7 @@ def _differing(results: list[Result]) -> list[str]:
 
 
 def _panel(axes: Axes, curves: dict[Curve, list[Result]], share: Callable[[Result], float]) -> None:
-    for index, rows in enumerate(curves.values()):
-        colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+    for rows, (colour, marker) in zip(curves.values(), _looks(len(curves)), strict=True):
         means = defaultdict(list)
         for row in rows:
             if row.method == "functions":
@@ -173,17 +178,26 @@ def _panel(axes: Axes, curves: dict[Curve, list[Result]], share: Callable[[Resul
 _POINT = {"linestyle": "none", "markerfacecolor": "white", "markersize": 6, "markeredgewidth": 1.3}
 
 
+def _looks(count: int) -> list[tuple[Colour, str]]:
+    """Colour and marker of each curve."""
+    if count <= len(COLOURS):
+        colours = list(COLOURS[:count])
+    else:
+        colours = [plt.get_cmap(COLOUR_MAP)(0.92 * index / (count - 1)) for index in range(count)]
+    return [(colour, MARKERS[index % len(MARKERS)]) for index, colour in enumerate(colours)]
+
+
 def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Line2D]:
     differing = _differing(results)
     handles = [
         Line2D(
             [],
             [],
-            color=COLOURS[index % len(COLOURS)],
-            marker=MARKERS[index % len(MARKERS)],
+            color=colour,
+            marker=marker,
             label=", ".join(_label(name, value) for name, value in zip(differing, curve, strict=True)) or "functions",
         )
-        for index, curve in enumerate(curves)
+        for curve, (colour, marker) in zip(curves, _looks(len(curves)), strict=True)
     ]
     if {result.method for result in results} == {"functions", "resolved"}:
         handles.append(Line2D([], [], color="0.3", label="functions"))

@@ -65,6 +65,14 @@ def find_plugin() -> Path:
     raise LammpsMissing(f"no plugin {PLUGIN} (tried {tried}); run ./bootstrap build or set DUSTDETACH_PLUGIN")
 
 
+def plugin_if_any() -> Path | None:
+    """The plugin file, or ``None`` where the package is compiled into LAMMPS and there is no plugin."""
+    try:
+        return find_plugin()
+    except LammpsMissing:
+        return None
+
+
 @cache
 def find_deck(name: str) -> Path:
     """A deck of ``lammps-inputs``.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .impact import Impact
-from .places import find_deck
+from .places import find_deck, plugin_if_any
 from .result import Result
 from .session import lammps_session
 
@@ -56,8 +56,8 @@ def run(impact: Impact, *, comm: Any = None, events: Path | None = None) -> Resu
     started = time.perf_counter()
     parameters = asdict(impact)
     variables = {name: parameters[name] for name in _VARIABLES}
-    if events is not None:
-        variables["events"] = events
+    # the deck's own line "plugin load" finds the plugin that is loaded already
+    variables |= {name: path for name, path in (("plugin", plugin_if_any()), ("events", events)) if path}
     deck = find_deck(DECK)
     with lammps_session(variables, comm) as lmp:
         lmp.file(str(deck))

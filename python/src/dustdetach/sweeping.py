@@ -25,7 +25,7 @@ from typing import Any
 from .errors import InvalidInput, LammpsMissing
 from .files import replace_file
 from .impact import Impact
-from .places import find_deck, find_plugin, lammps_library
+from .places import find_deck, lammps_library, plugin_if_any
 from .result import Result, write_csv
 from .runner import DECK, run
 from .version import __version__
@@ -152,8 +152,7 @@ class _Table:
         self._path = folder / TABLE
         self._written = time.monotonic()
         self.rows = {
-            path.parent.name: Result.from_json(path.read_text())
-            for path in folder.glob(f"*-{build.suffix}/{COMPLETE}")
+            path.parent.name: Result.from_json(path.read_text()) for path in folder.glob(f"*-{build.suffix}/{COMPLETE}")
         }
 
     def add(self, name: str, result: Result) -> None:
@@ -275,10 +274,8 @@ def _then_gather(mine: Iterable[Outcome], world: Any) -> Iterator[Outcome]:
 
 def _plugin_digest() -> str:
     """Of every library of the plugin: the one LAMMPS loads may be a door to another beside it."""
-    try:
-        return _digest(*sorted(find_plugin().parent.glob("dust*.so")))
-    except LammpsMissing:
-        return "compiled into LAMMPS"
+    plugin = plugin_if_any()
+    return _digest(*sorted(plugin.parent.glob("dust*.so"))) if plugin else "compiled into LAMMPS"
 
 
 def _digest(*paths: Path) -> str:

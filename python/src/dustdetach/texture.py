@@ -213,7 +213,9 @@ def _numbers(number: int, words: list[str], count: int) -> list[float]:
     try:
         values = [float(word) for word in words]
     except ValueError as error:
-        raise _BadLine(f"line {number}: {str(error).replace('could not convert string to float: ', 'not a number: ')}") from None
+        raise _BadLine(
+            f"line {number}: {str(error).replace('could not convert string to float: ', 'not a number: ')}"
+        ) from None
     if not all(map(math.isfinite, values)):
         raise _BadLine(f"line {number}: a number that is not finite")
     return values

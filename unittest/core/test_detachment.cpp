@@ -1,0 +1,326 @@
+// The detachment functions against a reference that visits every grain at every step, and against closed forms.
+
+#include "detachment.h"
+
+#include "hamaker.h"
+#include "jkr.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+using namespace Dust;
+
+namespace {
+
+constexpr double RP = 0.75e-3, RD = 10.0e-6;
+const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9),
+                          combined_modulus(75.0e9, 0.3, 210.0e9, 0.3), 0.3};
+const double GRAIN_MASS = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0;
+const double HOLD = pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / GRAIN_MASS;
+
+struct Vec {
+  double x, y, z;
+};
+Vec operator*(double s, const Vec &v) { return {s * v.x, s * v.y, s * v.z}; }
+Vec operator+(const Vec &a, const Vec &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+double dot(const Vec &a, const Vec &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double size(const Vec &v) { return std::sqrt(dot(v, v)); }
+
+// a collision: contact acceleration of each step, velocities before and after
+struct History {
+  std::vector<Vec> a;
+  Vec before, after;
+  double dt;
+};
+
+struct Outcome {
+  std::map<int, std::pair<int, int>> left;    // grain: step, mode
+  int north = 0, sliding = 0, rolling = 0;
+};
+
+// the equations as they stand on the physics page, in forces, for each grain at each step
+Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria &criteria, const History &h)
+{
+  Outcome out;
+  const Vec dv = h.before + -1.0 * h.after;
+  const double contact_time = h.a.size() * h.dt;
+  for (size_t i = 0; i < texture.grains.size(); i++) {
+    const Grain &g = texture.grains[i];
+    const Vec n = {g.n[0], g.n[1], g.n[2]};
+    const double mass = 4.0 / 3.0 * M_PI * g.radius * g.radius * g.radius * m.density;
+    const double r12 = effective_radius(texture.carrier_radius, g.radius), r_pd = texture.carrier_radius + g.radius;
+    const double fc = pull_off_force(m.gamma, r12), a0 = equilibrium_contact_radius(m.gamma, r12, m.modulus);
+    bool attached = true, slid = false, rolled = false;
+    double largest = 0.0;
+    for (size_t k = 0; attached && k < h.a.size(); k++) {
+      const Vec f = -mass * h.a[k];
+      const double fn = dot(f, n), ft = size(f + -fn * n);
+      const bool slides = ft > m.friction * std::fabs(2.0 * fc - fn), rolls = ft * g.radius > std::fabs(fc - fn) * a0;
+      slid |= slides;
+      rolled |= rolls;
+      largest = std::max(largest, std::fabs(2.0 * fc - fn));
+      int mode = NMODES;
+      if (fn > fc) mode = NORMAL;
+      else if (criteria.ibrahim && slides) mode = SLIDING;
+      else if (criteria.ibrahim && rolls) mode = ROLLING;
+      if (mode != NMODES) {
+        out.left[i] = {k, mode};
+        attached = false;
+      }
+    }
+    const bool north = dot(n, dv) < 0.0;
+    if (attached && north && criteria.tangential != Criteria::OFF) {
+      const double vt0 = size(dv + -dot(dv, n) * n);
+      const double friction = criteria.tangential == Criteria::ESTIMATE ? 0.5 * m.friction * largest : 0.0;
+      const double work = friction * 0.5 * vt0 * contact_time;
+      const double vt = std::sqrt(std::max(0.0, vt0 * vt0 - 2.0 * work / mass));
+      if (mass * vt * vt / r_pd > fc) {
+        out.left[i] = {h.a.size(), TANGENTIAL};
+        attached = false;
+      }
+    }
+    out.sliding += slid;
+    out.rolling += rolled;
+    out.north += !attached && north;
+  }
+  return out;
+}
+
+// the same by Collision; handed over to another one every `handover` steps
+Outcome by_collision(const Texture &texture, const DetachmentFunctions &functions, const History &h, int handover = 0)
+{
+  Outcome out;
+  std::vector<uint64_t> attached = functions.all_attached();
+  std::vector<Detachment> detached;
+  Collision collision;
+  collision.begin(&h.before.x);
+  for (size_t k = 0; k <= h.a.size(); k++) {
+    if (k < h.a.size()) collision.step(functions, &h.a[k].x, h.dt, attached.data(), detached);
+    else collision.end(functions, &h.after.x, attached.data(), detached);
+    for (const Detachment &d : detached) {
+      EXPECT_EQ(out.left.count(functions.grain(d.bit)), 0u) << "a grain left twice";
+      out.left[functions.grain(d.bit)] = {static_cast<int>(k), d.mode};
+    }
+    detached.clear();
+    if (handover && k % handover == 0) {
+      std::vector<double> buf(collision.packed_size());
+      collision.pack(buf.data());
+      Collision other;
+      other.unpack(buf.data());
+      collision = other;
+    }
+  }
+  out.north = collision.lost_north(functions, &h.after.x, attached.data());
+  out.sliding = collision.sliding_grains(functions, attached.data());
+  out.rolling = collision.rolling_grains(functions, attached.data());
+  int still = 0;
+  for (uint64_t word : attached) still += __builtin_popcountll(word);
+  EXPECT_EQ(still + out.left.size(), texture.grains.size());
+  return out;
+}
+
+void expect_same(const Outcome &a, const Outcome &b)
+{
+  EXPECT_EQ(a.left, b.left);
+  EXPECT_EQ(a.north, b.north);
+  EXPECT_EQ(a.sliding, b.sliding);
+  EXPECT_EQ(a.rolling, b.rolling);
+}
+
+// a few pulses in random directions: straight, turning, with several peaks and with kinks
+History random_history(std::mt19937 &random)
+{
+  const auto u = [&]() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); };
+  const auto direction = [&]() {
+    const double z = 2.0 * u() - 1.0, phi = 2.0 * M_PI * u(), s = std::sqrt(1.0 - z * z);
+    return Vec{s * std::cos(phi), s * std::sin(phi), z};
+  };
+  History h;
+  const int steps = 3 + static_cast<int>(400 * u() * u());
+  h.a.assign(steps, {0.0, 0.0, 0.0});
+  const int pulses = 1 + static_cast<int>(3.5 * u());
+  for (int p = 0; p < pulses; p++) {
+    const double strength = HOLD * std::exp(6.0 * u() - 2.0), middle = u() * steps, width = steps * (0.05 + u());
+    const Vec d = direction();
+    for (int k = 0; k < steps; k++) {
+      const double x = (k + 0.5 - middle) / width;
+      if (std::fabs(x) < 1.0) h.a[k] = h.a[k] + strength * (1.0 - x * x) * d;
+    }
+  }
+  h.dt = 4.0e-6 / steps * (0.2 + 2.0 * u());
+  h.before = 10.0 * u() * direction();
+  h.after = h.before;
+  for (const Vec &a : h.a) h.after = h.after + h.dt * a;
+  return h;
+}
+
+// a damped Hertzian impact along z in small steps
+History straight_impact(double speed, double restitution_damping)
+{
+  const double mass = 4.0 / 3.0 * M_PI * RP * RP * RP * 7700.0, k = 4.0 / 3.0 * 1.154e11 * std::sqrt(RP);
+  History h;
+  h.dt = 1.0e-9;
+  h.before = {0.0, 0.0, -speed};
+  double overlap = 0.0, v = speed;
+  while (true) {
+    overlap += v * h.dt;
+    const double elastic = k * overlap * std::sqrt(overlap);
+    const double f = elastic + restitution_damping * std::sqrt(mass * elastic / overlap) * v;
+    if (f <= 0.0) break;
+    h.a.push_back({0.0, 0.0, f / mass});
+    v -= f / mass * h.dt;
+  }
+  h.after = {0.0, 0.0, -v};
+  return h;
+}
+
+}    // namespace
+
+TEST(Detachment, SameGrainsAsBruteForceInRandomCollisions)
+{
+  std::mt19937 random(1);
+  const Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);    // 211 grains: four patches, one not full
+  Material m = CALCITE;
+  m.gamma *= std::pow(40.0e-6 / RD, 2) * effective_radius(RP, RD) / effective_radius(RP, 40.0e-6) * 4.0;    // hold as HOLD
+  int left = 0, normal = 0, rear = 0;
+  for (int i = 0; i < 3000; i++) {
+    Criteria criteria;
+    criteria.ibrahim = i % 4 == 3;
+    if (i % 7 == 5) criteria.tangential = Criteria::FRICTIONLESS;
+    if (i % 7 == 6) criteria.tangential = Criteria::OFF;
+    m.friction = i % 5 == 4 ? 0.0 : 0.3;
+    const DetachmentFunctions functions(texture, m, criteria);
+    const History h = random_history(random);
+    const Outcome expected = by_brute_force(texture, m, criteria, h);
+    const Outcome found = by_collision(texture, functions, h);
+    expect_same(found, expected);
+    expect_same(by_collision(texture, functions, h, 17), expected);
+    if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
+    left += expected.left.size();
+    for (const auto &[grain, how] : expected.left) {
+      normal += how.second == NORMAL;
+      rear += how.second == TANGENTIAL;
+    }
+  }
+  EXPECT_GT(normal, 50000);    // the test tests something
+  EXPECT_GT(rear, 5000);
+  EXPECT_LT(left, 3000 * 200);
+}
+
+TEST(Detachment, SameGrainsAsBruteForceForGrainsOfAllSizes)
+{
+  std::mt19937 random(2);
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius *= 0.2 + 0.8 * std::uniform_real_distribution<double>()(random);
+  Material m = CALCITE;
+  m.gamma *= 16.0;
+  const DetachmentFunctions functions(texture, m, Criteria());
+  double mass = 0.0, expected_mass = 0.0;
+  for (int bit = 0; bit < functions.grains(); bit++) mass += functions.weight(bit) * functions.mean_mass();
+  for (const Grain &g : texture.grains) expected_mass += 4.0 / 3.0 * M_PI * std::pow(g.radius, 3) * m.density;
+  EXPECT_NEAR(mass, expected_mass, 1.0e-12 * expected_mass);
+  for (int i = 0; i < 500; i++) {
+    const History h = random_history(random);
+    expect_same(by_collision(texture, functions, h), by_brute_force(texture, m, Criteria(), h));
+    if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
+  }
+}
+
+TEST(Detachment, ReferenceImpactsSameAsBruteForce)
+{
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  for (double speed : {0.3, 3.0, 8.0})
+    for (bool ibrahim : {false, true}) {
+      Criteria criteria;
+      criteria.ibrahim = ibrahim;
+      const History h = straight_impact(speed, 0.2733);
+      expect_same(by_collision(texture, DetachmentFunctions(texture, CALCITE, criteria), h),
+                  by_brute_force(texture, CALCITE, criteria, h));
+    }
+}
+
+TEST(Detachment, NormalModeOfAStraightImpactIsTheCapOfTheClosedForm)
+{
+  // 1/2 (1 - c/a_max) of the sphere less the bare cap; a texture of 4500 scatters by about 0.5 %, 20 of them by 0.1 %
+  const History h = straight_impact(2.0, 0.2733);
+  double peak = 0.0;
+  for (const Vec &a : h.a) peak = std::max(peak, a.z);
+  const double bare = 0.5 * (1.0 - std::cos(0.33));
+  const double expected = (0.5 * (1.0 - HOLD / peak) - bare) / (1.0 - bare);
+  double found = 0.0;
+  for (int seed = 1; seed <= 20; seed++) {
+    const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
+    found += by_collision(texture, DetachmentFunctions(texture, CALCITE, Criteria()), h).left.size() / 4500.0 / 20.0;
+  }
+  EXPECT_NEAR(found, expected, 0.003);
+}
+
+TEST(Detachment, FrictionlessRingOfTheClosedForm)
+{
+  // v_t0 = |Dv| sin(polar angle) above v_crit: the ring between asin(v_crit/|Dv|) and the equator
+  Criteria criteria;
+  criteria.tangential = Criteria::FRICTIONLESS;
+  const History h = straight_impact(8.0, 0.2733);
+  const double v_crit = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);
+  EXPECT_NEAR(v_crit, 10.05, 0.005);    // the physics page
+  const double bare = 0.5 * (1.0 - std::cos(0.33));
+  const double expected = 0.5 * std::sqrt(1.0 - std::pow(v_crit / dv, 2)) / (1.0 - bare);
+  double found = 0.0;
+  for (int seed = 1; seed <= 20; seed++) {
+    const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
+    found += by_collision(texture, DetachmentFunctions(texture, CALCITE, criteria), h).north / 4500.0 / 20.0;
+  }
+  EXPECT_NEAR(found, expected, 0.003);
+}
+
+TEST(Detachment, RearGrainsFlyOffWithWhatFrictionLeaves)
+{
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  const DetachmentFunctions functions(texture, CALCITE, Criteria());
+  const History h = straight_impact(9.0, 0.2733);
+  std::vector<uint64_t> attached = functions.all_attached();
+  std::vector<Detachment> detached;
+  Collision collision;
+  collision.begin(&h.before.x);
+  for (const Vec &a : h.a) collision.step(functions, &a.x, h.dt, attached.data(), detached);
+  detached.clear();
+  ASSERT_TRUE(collision.end(functions, &h.after.x, attached.data(), detached));
+  EXPECT_NEAR(collision.duration(), h.a.size() * h.dt, 1.0e-15);
+  const double needed = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);
+  for (const Detachment &d : detached) {
+    const Grain &g = texture.grains[functions.grain(d.bit)];
+    const Vec v = {d.velocity[0], d.velocity[1], d.velocity[2]}, n = {g.n[0], g.n[1], g.n[2]};
+    EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);                         // along the surface,
+    EXPECT_LT(v.z, 0.0);                                          // towards the point of impact,
+    EXPECT_GT(size(v), needed);                                   // faster than what adhesion can hold,
+    EXPECT_LT(size(v), dv * std::sqrt(1.0 - n.z * n.z));          // slower than without friction
+  }
+}
+
+TEST(Detachment, NothingLeavesBelowThePullOffForce)
+{
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  const DetachmentFunctions functions(texture, CALCITE, Criteria());
+  History h;
+  h.dt = 1.0e-9;
+  h.a.assign(100, {0.0, 0.0, 0.9999 * HOLD});
+  h.before = {0.0, 0.0, -0.01};
+  h.after = {0.0, 0.0, 0.003};
+  EXPECT_TRUE(by_collision(texture, functions, h).left.empty());
+  h.a.assign(100, {0.0, 0.0, 1.5 * HOLD});
+  EXPECT_FALSE(by_collision(texture, functions, h).left.empty());
+}
+
+TEST(Detachment, EqualGrainsWeighExactlyOne)
+{
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  const DetachmentFunctions functions(texture, CALCITE, Criteria());
+  for (int bit = 0; bit < functions.grains(); bit++) ASSERT_EQ(functions.weight(bit), 1.0);
+  EXPECT_NEAR(functions.mean_mass(), 1.1310e-11, 0.5e-15);    // the physics page
+  EXPECT_NEAR(functions.least_hold(), 1.330e5, 0.5e2);
+  EXPECT_EQ(functions.words(), 71);
+}
