@@ -14,7 +14,7 @@ function(add_gtest folder file)
   set(target "${folder}_${name}")
   add_executable(${target} "${file}")
   target_link_libraries(${target} PRIVATE ${ARGN} GTest::gtest_main)
-  target_include_directories(${target} PRIVATE src unittest)
+  target_include_directories(${target} PRIVATE src src/core unittest unittest/${folder})
   target_compile_definitions(${target} PRIVATE DUST_INPUTS_DIR="${CMAKE_SOURCE_DIR}/lammps-inputs"
                              DUST_TEST_DIR="${CMAKE_SOURCE_DIR}/unittest/${folder}")
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/unittest")

@@ -38,6 +38,10 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, "Fix dust/detach needs atoms with radius and mass of their own, such as atom_style sphere");
   if (domain->dimension != 3) error->all(FLERR, "Fix dust/detach needs dimension 3");
+  // elsewhere LAMMPS' own granular models do not convert, nor does set density
+  if (force->ftm2v != 1.0 || force->mvv2e != 1.0 || force->nktv2p != 1.0 || force->mv2d != 1.0)
+    error->all(FLERR, "Fix dust/detach works with units si, cgs, lj, micro or nano, not with units {}, in which force is not "
+               "mass times acceleration", update->unit_style);
 
   parse(narg, arg);
 
@@ -129,7 +133,7 @@ void FixDustDetach::parse(int narg, char **arg)
       }
     } else if (key == "density") {
       need(iarg, 1);
-      input.density = positive(iarg, 1) / force->mv2d;
+      input.density = positive(iarg, 1);
       iarg += 2;
     } else if (key == "hamaker") {
       need(iarg, 2);
@@ -142,7 +146,7 @@ void FixDustDetach::parse(int narg, char **arg)
     } else if (key == "elastic") {
       need(iarg, 4);
       for (int k = 0; k < 4; k += 2) {
-        input.elastic[k] = positive(iarg, k + 1) / force->nktv2p;
+        input.elastic[k] = positive(iarg, k + 1);
         input.elastic[k + 1] = number(iarg + k + 2);
         checked(iarg, k + 2, input.elastic[k + 1] > -1.0 && input.elastic[k + 1] <= 0.5, "above -1 and at most 0.5");
       }
@@ -328,8 +332,7 @@ void FixDustDetach::build()
   const double *el = input.elastic;
   const Dust::Material material = {input.density, input.surface_energy,
                                    Dust::combined_modulus(el[0], el[1], el[2], el[3]), input.friction};
-  // the core compares accelerations: the pull-off force per mass in units of velocity/time
-  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, input.criteria, force->ftm2v);
+  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, input.criteria);
 
   // a number that tells this texture from another one in a restart file
   texture_checksum = 0.0;
@@ -388,9 +391,10 @@ void FixDustDetach::init()
   } else if (find_carriers()) {
     build();
   } else {
-    const auto inserts = [](const Fix *fix) { return utils::strmatch(fix->style, "^(pour|deposit|append/atoms|gcmc)"); };
-    const auto &fixes = modify->get_fix_list();
-    if (std::none_of(fixes.begin(), fixes.end(), inserts))
+    bool inserts = false;
+    for (const char *style : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
+      inserts = inserts || !modify->get_fix_by_style(style).empty();
+    if (!inserts)
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
   sums_step = under_way_step = -1;
@@ -466,7 +470,7 @@ void FixDustDetach::collide(int i)
     collisions[state[i]].begin(atom->v[i]);
   }
   Dust::Collision &collision = collisions[state[i]];
-  const double per_mass = force->ftm2v / atom->rmass[i];
+  const double per_mass = 1.0 / atom->rmass[i];
   const double *f = atom->f[i];
   const double acceleration[3] = {f[0] * per_mass, f[1] * per_mass, f[2] * per_mass};
   if (collision.step(*functions, acceleration, update->dt, attached[i], detached)) record(i);
@@ -524,7 +528,7 @@ void FixDustDetach::drop_lost_collisions()
 
 void FixDustDetach::record(int i)
 {
-  const double half_kick = 0.5 * update->dt * force->ftm2v / atom->rmass[i];    // v is half a step behind
+  const double half_kick = 0.5 * update->dt / atom->rmass[i];    // v is half a step behind
   for (const Dust::Detachment &d : detached) {
     const double weight = functions->weight(d.bit);
     const double mass = weight * functions->mean_mass();

@@ -77,8 +77,7 @@ template <typename Visit> void each_bit(uint64_t word, Visit visit)
 
 /* ---------------------------------------------------------------------- */
 
-DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria,
-                                         double acceleration_unit) :
+DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria) :
     criteria(criteria), friction(material.friction), grain_of(texture.grains.size())
 {
   std::iota(grain_of.begin(), grain_of.end(), 0);
@@ -106,7 +105,7 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
     nx[bit] = g.n[0];
     ny[bit] = g.n[1];
     nz[bit] = g.n[2];
-    hold[bit] = acceleration_unit * pull_off_force(material.gamma, r12) / mass_of(g);
+    hold[bit] = pull_off_force(material.gamma, r12) / mass_of(g);
     lever[bit] = equilibrium_contact_radius(material.gamma, r12, material.modulus) / g.radius;
     shell[bit] = texture.carrier_radius + g.radius;
     relative_mass[bit] = mass_of(g) / mass;

@@ -44,9 +44,7 @@ struct Material {
 /*! One texture made ready for evaluation; shared by all carriers, never changed */
 class DetachmentFunctions {
  public:
-  /*! \param acceleration_unit  of force/mass in velocity/time; 1 in a consistent set of units */
-  DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria,
-                      double acceleration_unit = 1.0);
+  DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria);
 
   int grains() const { return static_cast<int>(grain_of.size()); }
   int words() const { return static_cast<int>(all.size()); }

@@ -114,7 +114,8 @@ def _parser() -> argparse.ArgumentParser:
     draw.add_argument("--out", type=Path, required=True, metavar="PNG", help="picture")
 
     _command(commands, "doctor", "what is installed, and what is wrong with it", _doctor)
-    _command(commands, "report", "not there yet", _report)
+    report = _command(commands, "report", "not there yet", _report)
+    report.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
     return parser
 
 
@@ -248,8 +249,8 @@ def _texture_check(options: argparse.Namespace, _: bool) -> int:
     except InvalidInput as error:
         raise InvalidInput(f"{options.file}: {error}") from None
     print(
-        f"{options.file}: {len(texture.diameters)} grains, coverage {texture.coverage:.6f}, bare cap {texture.bare:g} rad; "
-        "unit vectors, no overlaps, none in the bare cap"
+        f"{options.file}: {len(texture.diameters)} grains, coverage {texture.coverage:.6f}, bare cap "
+        f"{texture.bare:g} rad; unit vectors, no overlaps, none in the bare cap"
     )
     return 0
 

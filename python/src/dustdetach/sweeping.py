@@ -1,9 +1,9 @@
 """Runs many impacts into a folder: one folder a case, and a table of all of them.
 
-A case is complete when its ``result.json`` exists; the file is written under another name and then renamed, so that a
-sweep which was killed, even by ``kill -9``, picks up where it stopped and loses no more than the cases in work. A
-case's folder is named by its parameters and by what computes it (versions of this package and of LAMMPS, contents of the
-plugin and the deck): results of another build are never taken for one's own.
+A case is complete when its ``result.json`` exists; the file is written under another name and then renamed, so that
+a sweep which was killed, even by ``kill -9``, picks up where it stopped and loses no more than the cases in work. A
+case's folder is named by its parameters and by what computes it (version of this package, contents of LAMMPS' library,
+the plugin and the deck): results of another build are never taken for one's own.
 """
 
 from __future__ import annotations

@@ -128,7 +128,7 @@ def check_texture(texture: Texture) -> None:
     for index in np.flatnonzero(along > math.cos(texture.bare) + ROUNDING)[:1]:
         angle = math.acos(min(1.0, along[index]))
         raise InvalidInput(
-            f"line {texture.lines[index]}: grain at {angle:.4g} rad from the axis of the bare cap of {texture.bare:g} rad"
+            f"line {texture.lines[index]}: grain {angle:.4g} rad from the axis of the bare cap of {texture.bare:g} rad"
         )
     overlap = find_overlap(texture)
     if overlap is not None:

@@ -1,0 +1,38 @@
+"""Shared by all tests: the command, and the sweeps of both figures, run once."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+# so that tests find closed_form.py whatever pytest's import mode
+sys.path.insert(0, str(Path(__file__).parent))
+
+from dustdetach import figure4, figure5, read_csv, sweep
+
+
+@pytest.fixture
+def command(tmp_path):
+    """Run ``dustdetach`` in an empty folder; returns the finished process."""
+
+    def run(*arguments, cwd=tmp_path, **kwargs):
+        words = [sys.executable, "-m", "dustdetach", *map(str, arguments)]
+        return subprocess.run(words, cwd=cwd, capture_output=True, text=True, timeout=300, **kwargs)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def figures_folder(tmp_path_factory):
+    """Folder with the sweeps of Figs. 4 and 5."""
+    folder = tmp_path_factory.mktemp("figures")
+    sweep(figure4(), folder)
+    sweep(figure5(), folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def figures_table(figures_folder):
+    """Rows of both sweeps by (speed, angle, restitution)."""
+    return {(row.speed, row.angle, row.restitution): row for row in read_csv(figures_folder / "results.csv")}

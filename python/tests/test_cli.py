@@ -1,0 +1,180 @@
+"""The command: what it prints, and that bad input is one line, exit status 2 and nothing written."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from dustdetach import Impact
+from dustdetach.cli import main
+from dustdetach.result import KEYS
+
+INTERFACE_KEYS = """
+    method speed angle restitution coverage bare grain_diameter carrier_diameter hamaker z0 friction wall_friction
+    grain_damping seed tangential rotation grains dispersion_ratio north south normal tangential_mode contact_time
+    peak_acceleration restitution_realised timestep steps end loop_seconds wall_seconds lammps_version
+""".split()
+
+IMPACT = ("impact", "--speed", "4", "--angle", "90", "--restitution", "0.7")
+
+
+def assert_one_line(process, words, status=2):
+    assert process.returncode == status, process.stderr
+    assert process.stdout == ""
+    assert process.stderr.count("\n") == 1, process.stderr
+    assert words in process.stderr
+    assert process.stderr.startswith("dustdetach")
+
+
+def test_json_has_the_keys_of_the_interface_in_order(command, tmp_path):
+    process = command(*IMPACT, "--method", "functions", "--tangential", "estimate", "--no-rotation", "--json")
+    assert process.returncode == 0, process.stderr
+    assert list(json.loads(process.stdout)) == INTERFACE_KEYS == list(KEYS)
+    assert process.stderr == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_json_a_summary(command, tmp_path):
+    process = command(*IMPACT)
+    assert process.returncode == 0
+    assert "dispersion ratio" in process.stdout
+    assert "south" in process.stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--speed", "0"), "--speed: 0 is out of range; allowed: above 0 and at most 100 m/s"),
+        (("--speed", "nan"), "--speed: nan is not a finite number"),
+        (("--speed", "fast"), "--speed: invalid float value: 'fast'"),
+        (("--angle", "91"), "--angle: 91 is out of range; allowed: above 0 and at most 90 degrees"),
+        (("--angle", "0"), "--angle: 0 is out of range"),
+        (("--restitution", "0"), "--restitution: 0 is out of range; allowed: above 0 and at most 1"),
+        (("--restitution", "1.2"), "--restitution: 1.2 is out of range"),
+        (("--coverage", "0"), "--coverage: 0 is out of range; allowed: above 0 and at most 0.5"),
+        (("--coverage", "-1"), "--coverage: -1 is out of range"),
+        (("--coverage", "0.7"), "--coverage: 0.7 is out of range"),
+        (("--bare", "4"), "--bare: 4 is out of range"),
+        (("--grain-diameter", "0.002"), "--grain-diameter: 0.002 is out of range; allowed: above 0 and at most 0.0015"),
+        (("--carrier-diameter", "-1"), "--carrier-diameter: -1 is out of range"),
+        (("--hamaker", "0"), "--hamaker: 0 is out of range"),
+        (("--z0", "0"), "--z0: 0 is out of range"),
+        (("--friction", "-1"), "--friction: -1 is out of range"),
+        (("--wall-friction", "-1"), "--wall-friction: -1 is out of range"),
+        (("--grain-damping", "-1"), "--grain-damping: -1 is out of range"),
+        (("--seed", "0"), "--seed: 0 is out of range; allowed: 1 to 900000000"),
+        (("--seed", "1.5"), "--seed: invalid int value: '1.5'"),
+        (
+            ("--tangential", "integrate"),
+            "--tangential: unknown choice 'integrate'; allowed: estimate, frictionless, off",
+        ),
+        (("--timestep", "1"), "--timestep: 1 is out of range"),
+        (("--method", "resolved"), "--method: resolved impacts are not there yet"),
+        (("--method", "magic"), "--method: unknown choice 'magic'; allowed: functions"),
+        (("--rotation",), "--rotation: following the carrier's spin is not there yet"),
+        (("--picture", "carrier.txt"), "--picture: carrier.txt; allowed: a file name that ends in .png"),
+        (("--picture", "no/such/carrier.png"), "--picture: there is no folder no/such"),
+        (("--colour", "red"), "unrecognized arguments: --colour red"),
+        (("--spe", "4"), "unrecognized arguments: --spe 4"),
+    ],
+)
+def test_bad_options_of_impact(command, tmp_path, options, words):
+    assert_one_line(command(*IMPACT, *options), words)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_lammps_refuses(command, tmp_path):
+    # so near to where placement jams that only the placement can tell
+    process = command(*IMPACT, "--coverage", Impact(speed=4).largest_coverage)
+    assert_one_line(process, "coverage")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("sweep", "figure6", "--out", "out"), "figure6: no such file; allowed: figure4, figure5"),
+        (("sweep", "figure4"), "--out"),
+        (("sweep", "figure4", "--out", "out", "--jobs", "0"), "--jobs: 0 is out of range; allowed: 1 or more"),
+        (("sweep", "figure4", "--out", "out", "--executor", "cloud"), "--executor: unknown choice 'cloud'"),
+        (
+            ("sweep", "figure4", "--out", "out", "--method", "both"),
+            "--method: both is not there yet; allowed: functions",
+        ),
+        (("plot", "nowhere"), "nowhere/results.csv: no such file"),
+        (("report", "nowhere"), "report is not there yet; allowed: plot"),
+        (("texture", "make", "--coverage", "0.7", "--out", "t"), "--coverage: 0.7 is out of range"),
+        (("texture", "make", "--out", "no/such/t"), "--out: there is no folder no/such"),
+        (("texture", "make", "--out", "."), "--out: . is a folder"),
+        (("texture", "check", "nowhere"), "nowhere: No such file"),
+        (("texture", "draw", "nowhere", "--out", "t.png"), "nowhere: No such file"),
+        (("conjure",), "invalid choice: 'conjure'"),
+        ((), "required: COMMAND"),
+    ],
+)
+def test_bad_arguments_of_the_other_commands(command, tmp_path, arguments, words):
+    assert_one_line(command(*arguments), words)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_out_that_is_a_file(command, tmp_path):
+    (tmp_path / "out").write_text("mine")
+    assert_one_line(command("sweep", "figure4", "--out", "out"), "--out: out is a file; allowed: the name of a folder")
+    assert (tmp_path / "out").read_text() == "mine"
+
+
+def test_unknown_key_of_a_sweep(command, tmp_path):
+    (tmp_path / "sweep.toml").write_text("speed = [2, 4]\nspede = 3\n")
+    assert_one_line(command("sweep", "sweep.toml", "--out", "out"), "sweep.toml: spede: unknown key")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_value_out_of_range_in_a_sweep(command, tmp_path):
+    (tmp_path / "sweep.toml").write_text("speed = [2, 4]\nangle = [90, 91]\n")
+    assert_one_line(command("sweep", "sweep.toml", "--out", "out"), "--angle: 91 is out of range")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_plugin_is_said_with_what_to_do(command, tmp_path, monkeypatch):
+    monkeypatch.setenv("DUSTDETACH_PLUGIN", str(tmp_path / "dustplugin.so"))
+    assert_one_line(command(*IMPACT), "run ./bootstrap build or set DUSTDETACH_PLUGIN", status=1)
+
+
+def test_a_missing_lammps_is_said_with_what_to_do(command, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1] / "src"))
+    assert_one_line(command(*IMPACT), "no Python module lammps", status=1)
+
+
+def test_missing_decks_are_said_with_what_to_do(command, tmp_path, monkeypatch):
+    monkeypatch.setenv("DUSTDETACH_INPUTS", str(tmp_path))
+    assert_one_line(command(*IMPACT), "set DUSTDETACH_INPUTS", status=1)
+
+
+def test_several_ranks_are_for_the_mpi_executor(command, monkeypatch):
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "0")
+    assert_one_line(command(*IMPACT), "started on 2 MPI ranks; allowed: sweep with --executor mpi")
+
+
+def test_the_mpi_executor_says_what_it_needs(command, tmp_path, monkeypatch):
+    # a folder that hides an installed mpi4py
+    hidden = tmp_path / "hidden"
+    (hidden / "mpi4py").mkdir(parents=True)
+    (hidden / "mpi4py" / "__init__.py").write_text("raise ImportError('hidden')\n")
+    monkeypatch.setenv("PYTHONPATH", str(hidden), prepend=":")
+    process = command("sweep", "figure4", "--out", "out", "--executor", "mpi")
+    assert_one_line(process, "--executor mpi needs mpi4py", status=1)
+    assert not (tmp_path / "out").exists()
+
+
+def test_help_and_version(command):
+    assert "impact" in command("--help").stdout
+    assert command("--version").stdout.startswith("dustdetach ")
+    for name in ("impact", "sweep", "plot", "texture", "doctor"):
+        assert command(name, "--help").returncode == 0
+
+
+def test_main_returns_the_status(capsys):
+    assert main(["plot", "/nowhere"]) == 2
+    assert "no such file" in capsys.readouterr().err

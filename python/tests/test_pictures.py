@@ -1,0 +1,72 @@
+"""Pictures of carriers, drawn by LAMMPS."""
+
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+
+from dustdetach import Impact, InvalidInput
+from dustdetach import pictures as module
+from dustdetach.pictures import draw_impact, draw_texture, read_fates
+from dustdetach.texture import make_texture, read_texture
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    """Small pictures: the time LAMMPS takes grows with the third power of the size."""
+    monkeypatch.setattr(module, "SIZE", 300)
+
+
+def share(pixels, red, green, blue):
+    """Share of the pixels whose colour is nearer to a direction in colour space than 0.97."""
+    colour = np.array([red, green, blue])
+    bright = pixels[pixels.max(axis=2) > 0.2]
+    cosines = bright @ colour / (np.linalg.norm(bright, axis=1) * np.linalg.norm(colour))
+    return np.count_nonzero(cosines > 0.985) / pixels[:, :, 0].size
+
+
+def test_a_texture(tmp_path):
+    make_texture(Impact(speed=1.0), tmp_path / "t.txt")
+    draw_texture(read_texture(tmp_path / "t.txt"), tmp_path / "t.png")
+    pixels = plt.imread(tmp_path / "t.png")[:, :, :3]
+    assert min(pixels.shape[:2]) > 200
+    height, width = pixels.shape[:2]
+    # corners white, the bare cap below the middle the carrier's blue grey
+    assert (pixels[0, 0] == 1).all()
+    cap = pixels[int(0.88 * height), width // 2]
+    assert cap[2] > cap[0]
+
+
+def test_an_impact_colours_what_comes_off(tmp_path):
+    _, orange, blue = (kind.colour for kind in module.FATES)
+    slow = draw_impact(Impact(speed=3.0), tmp_path / "slow.png")
+    fast = draw_impact(Impact(speed=10.0), tmp_path / "fast.png")
+    assert slow.north == 0 < fast.north
+    slow_pixels, fast_pixels = (plt.imread(tmp_path / name)[:, :, :3] for name in ("slow.png", "fast.png"))
+    assert share(slow_pixels, *orange) > 0.03
+    assert share(fast_pixels, *blue) > share(slow_pixels, *blue) + 0.01
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fast.png", "slow.png"]
+
+
+def test_every_detachment_of_an_impact_is_in_the_events(tmp_path):
+    from dustdetach import run
+
+    result = run(Impact(speed=8.0, angle=60.0), events=tmp_path / "events")
+    fates = read_fates(tmp_path / "events", 4500)
+    assert np.bincount(fates, minlength=3).tolist() == [
+        round(4500 * (1 - result.dispersion_ratio)),
+        round(4500 * result.normal),
+        round(4500 * result.tangential_mode),
+    ]
+
+
+def test_an_event_of_a_grain_that_is_not_there(tmp_path):
+    (tmp_path / "events").write_text("ITEM: ENTRIES step carrier grain mode\n5 1 7 1\n")
+    with pytest.raises(InvalidInput, match="an event of grain 7"):
+        read_fates(tmp_path / "events", 6)
+
+
+def test_the_command_draws(command, tmp_path):
+    assert command("texture", "make", "--coverage", "0.05", "--out", "t.txt").returncode == 0
+    drawn = command("texture", "draw", "t.txt", "--out", "t.png")
+    assert (drawn.returncode, drawn.stdout, drawn.stderr) == (0, "t.png\n", "")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["t.png", "t.txt"]

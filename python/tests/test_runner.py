@@ -1,0 +1,89 @@
+"""Impacts against an independent closed form, and what the record says about itself."""
+
+from dataclasses import replace
+
+import pytest
+from closed_form import collide, damping, hemispheres
+
+from dustdetach import Impact, InvalidInput, run
+
+SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0)
+RESTITUTIONS = (0.5, 0.6, 0.7, 0.8, 0.9)
+
+
+@pytest.mark.parametrize(
+    ("restitution", "alpha"), [(0.9, 0.0766), (0.7, 0.2733), (0.5, 0.571), (0.3, 1.112), (0.1, 2.780)]
+)
+def test_damping_of_the_independent_integration(restitution, alpha):
+    assert damping(restitution) == pytest.approx(alpha, rel=1e-3)
+
+
+@pytest.mark.parametrize("bare", [0.05, 0.33])
+@pytest.mark.parametrize("restitution", RESTITUTIONS)
+def test_straight_impacts_follow_the_closed_form(restitution, bare):
+    for speed in SPEEDS:
+        result = run(Impact(speed=speed, restitution=restitution, bare=bare))
+        south, north = hemispheres(speed, restitution, bare)
+        collision = collide(speed, damping(restitution))
+        assert result.south == pytest.approx(south, abs=0.012), speed
+        assert result.north == pytest.approx(north, abs=0.012), speed
+        assert result.restitution_realised == pytest.approx(restitution, rel=0.005), speed
+        assert result.contact_time == pytest.approx(collision.time, rel=0.01), speed
+        assert result.peak_acceleration == pytest.approx(collision.peak, rel=0.01), speed
+
+
+def test_shares_add_up():
+    result = run(Impact(speed=9.0, angle=60.0))
+    assert result.north + result.south == pytest.approx(result.dispersion_ratio, abs=1e-12)
+    assert result.normal + result.tangential_mode == pytest.approx(result.dispersion_ratio, abs=1e-12)
+    assert result.end == "rebound"
+    assert result.grains == 4500
+
+
+def test_the_same_impact_gives_the_same_numbers_and_another_seed_other_ones():
+    impact = Impact(speed=7.0)
+    first, second, other = run(impact), run(impact), run(replace(impact, seed=2))
+    timeless = {"loop_seconds": 0.0, "wall_seconds": 0.0}
+    assert replace(first, **timeless) == replace(second, **timeless)
+    assert other.north != first.north
+
+
+def test_tangential_off_leaves_the_north_and_frictionless_takes_more():
+    estimate = run(Impact(speed=7.0))
+    off = run(Impact(speed=7.0, tangential="off"))
+    frictionless = run(Impact(speed=7.0, tangential="frictionless"))
+    assert off.north == 0
+    assert off.south == estimate.south
+    assert frictionless.north > estimate.north > 0
+
+
+def test_each_parameter_reaches_lammps():
+    base = run(Impact(speed=7.0, angle=60.0))
+    changed = {
+        "coverage": 0.1,
+        "bare": 0.1,
+        "grain_diameter": 15e-6,
+        "carrier_diameter": 1.2e-3,
+        "hamaker": 2e-19,
+        "z0": 0.5e-9,
+        "friction": 0.1,
+        "wall_friction": 0.3,
+        "timestep": 2e-9,
+    }
+    for name, value in changed.items():
+        result = run(Impact(speed=7.0, angle=60.0, **{name: value}))
+        assert (result.dispersion_ratio, result.contact_time) != (base.dispersion_ratio, base.contact_time), name
+
+
+def test_half_the_surface_can_be_covered():
+    assert run(Impact(speed=4.0, coverage=0.5)).grains == 11250
+
+
+def test_what_lammps_refuses_is_one_line():
+    # just below the estimate of where placement jams, so that only the placement itself can tell
+    coverage = Impact(speed=1.0).largest_coverage
+    with pytest.raises(InvalidInput) as refusal:
+        run(Impact(speed=4.0, coverage=coverage))
+    assert "coverage" in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+    assert ".cpp" not in str(refusal.value)

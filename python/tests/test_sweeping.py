@@ -1,0 +1,147 @@
+"""Sweeps: the table, picking up after a kill, failures, several processes and ranks."""
+
+import csv
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from dustdetach import CasesFailed, Impact, InvalidInput, sweep
+from dustdetach.result import KEYS
+
+CASES = [Impact(speed=float(speed), angle=angle) for speed in range(2, 8) for angle in (60.0, 90.0)]
+
+
+def completed(folder):
+    return {path: path.stat().st_mtime_ns for path in folder.glob("*/result.json")}
+
+
+def rows(folder):
+    with open(folder / "results.csv", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_results_come_in_the_order_of_the_cases_and_fill_the_table(tmp_path):
+    results = sweep([*CASES, CASES[0]], tmp_path / "out")
+    assert [(result.speed, result.angle) for result in results] == [(case.speed, case.angle) for case in CASES]
+    table = rows(tmp_path / "out")
+    assert len(table) == len(CASES)
+    assert tuple(table[0]) == KEYS
+    assert {float(row["dispersion_ratio"]) for row in table} == {result.dispersion_ratio for result in results}
+
+
+def test_only_what_is_missing_is_run_again(tmp_path):
+    sweep(CASES, tmp_path)
+    before = completed(tmp_path)
+    removed = sorted(before)[:3]
+    for path in removed:
+        path.unlink()
+    told = []
+    sweep(CASES, tmp_path, progress=lambda done, total, left: told.append((done, total)))
+    after = completed(tmp_path)
+    assert [path for path in before if after[path] != before[path]] == sorted(removed, key=list(before).index)
+    assert told == [(done, len(CASES)) for done in range(len(CASES) - 3, len(CASES) + 1)]
+    assert len(rows(tmp_path)) == len(CASES)
+
+
+def test_a_killed_sweep_picks_up_where_it_stopped(tmp_path, command):
+    speeds = [1 + 0.05 * i for i in range(300)]
+    (tmp_path / "sweep.toml").write_text(f"speed = {speeds}\n")
+    folder = tmp_path / "out"
+    words = [sys.executable, "-m", "dustdetach", "sweep", "sweep.toml", "--out", "out"]
+    process = subprocess.Popen(words, cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True)
+    while len(completed(folder)) < 5:
+        assert process.poll() is None
+        time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    before = completed(folder)
+    assert 5 <= len(before) < len(speeds)
+
+    again = command("sweep", "sweep.toml", "--out", "out")
+    assert again.returncode == 0, again.stderr
+    assert again.stderr.startswith(f"{len(before)}/{len(speeds)} cases")
+    after = completed(folder)
+    assert {path: after[path] for path in before} == before
+    assert len(after) == len(rows(folder)) == len(speeds)
+
+
+def test_sweeps_of_the_same_folder_share_cases_and_the_table(figures_folder, figures_table):
+    assert len(rows(figures_folder)) == len(figures_table) == len(completed(figures_folder))
+
+
+def test_results_of_another_build_are_not_taken(tmp_path, monkeypatch):
+    sweep(CASES[:2], tmp_path)
+    monkeypatch.setattr("dustdetach.sweeping.__version__", "another")
+    sweep(CASES[:2], tmp_path)
+    assert len(completed(tmp_path)) == 4
+    assert len(rows(tmp_path)) == 2
+
+
+def test_a_case_that_fails_is_reported_and_the_others_go_on(tmp_path, command):
+    hopeless = Impact(speed=1.0).largest_coverage
+    (tmp_path / "sweep.toml").write_text(f"speed = [2, 4]\ncoverage = [0.2, {hopeless}]\n")
+    process = command("sweep", "sweep.toml", "--out", "out")
+    assert process.returncode == 1
+    assert process.stderr.count("case failed") == 2
+    assert len(rows(tmp_path / "out")) == 2
+    with pytest.raises(CasesFailed) as failure:
+        sweep([Impact(speed=2.0, coverage=hopeless)], tmp_path / "out")
+    assert len(failure.value.failures) == 1
+
+
+def test_if_every_case_fails_nothing_is_written(tmp_path):
+    with pytest.raises(CasesFailed):
+        sweep([Impact(speed=2.0, coverage=Impact(speed=1.0).largest_coverage)], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_processes_give_what_one_gives(tmp_path, figures_table):
+    for result in sweep(CASES, tmp_path, jobs=2):
+        expected = figures_table.get((result.speed, result.angle, result.restitution))
+        assert expected is not None
+        assert result.dispersion_ratio == expected.dispersion_ratio
+        assert result.contact_time == expected.contact_time
+
+
+def test_ranks_give_what_one_gives(tmp_path, command, figures_table):
+    pytest.importorskip("mpi4py")
+    mpirun = shutil.which("mpirun")
+    if mpirun is None:
+        pytest.skip("no mpirun")
+    (tmp_path / "sweep.toml").write_text("speed = [2, 4, 6, 8]\nangle = [60, 90]\n")
+    words = [mpirun, "--allow-run-as-root", "--oversubscribe", "-np", "3", sys.executable, "-m", "dustdetach"]
+    words += ["sweep", "sweep.toml", "--out", "out", "--executor", "mpi"]
+    process = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert process.returncode == 0, process.stderr
+    assert process.stdout == "out/results.csv\n"
+    table = rows(tmp_path / "out")
+    assert len(table) == 8
+    for row in table:
+        expected = figures_table[float(row["speed"]), float(row["angle"]), 0.7]
+        assert float(row["dispersion_ratio"]) == expected.dispersion_ratio
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"jobs": 0}, "--jobs: 0 is out of range"),
+        ({"executor": "cloud"}, "--executor: unknown choice 'cloud'; allowed: local, mpi"),
+        ({"executor": "mpi", "jobs": 2}, "--jobs: with --executor mpi"),
+    ],
+)
+def test_bad_arguments(tmp_path, options, words):
+    with pytest.raises(InvalidInput, match=words):
+        sweep(CASES, tmp_path / "out", **options)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_plugin_stops_the_sweep(tmp_path, command, monkeypatch):
+    monkeypatch.setenv("DUSTDETACH_PLUGIN", str(tmp_path / "none.so"))
+    process = command("sweep", "figure4", "--out", "out")
+    assert process.returncode == 1
+    assert "run ./bootstrap build or set DUSTDETACH_PLUGIN" in process.stderr
+    assert not (tmp_path / "out").exists()

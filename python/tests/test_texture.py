@@ -1,0 +1,135 @@
+"""Textures: what the extension places, and what the reader and the checks find wrong."""
+
+import math
+
+import numpy as np
+import pytest
+
+from dustdetach import Impact, InvalidInput
+from dustdetach.texture import check_texture, find_overlap, make_texture, read_texture
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    path = tmp_path_factory.mktemp("texture") / "reference.txt"
+    make_texture(Impact(speed=1.0), path)
+    return path
+
+
+@pytest.mark.parametrize("changes", [{}, {"coverage": 0.5}, {"bare": 0.05, "seed": 7}, {"grain_diameter": 2e-4}])
+def test_placed_textures_pass_every_check(tmp_path, changes):
+    impact = Impact(speed=1.0, **changes)
+    make_texture(impact, tmp_path / "t.txt")
+    texture = read_texture(tmp_path / "t.txt")
+    check_texture(texture)
+    assert len(texture.diameters) == impact.grains
+    grain = (impact.grain_diameter / impact.carrier_diameter) ** 2 / 4
+    assert texture.coverage == pytest.approx(impact.coverage, abs=grain)
+    assert texture.bare == impact.bare
+    assert [path.name for path in tmp_path.iterdir()] == ["t.txt"]
+
+
+def test_no_grain_overlaps_by_comparing_all_pairs(reference):
+    texture = read_texture(reference)
+    cosines = texture.directions @ texture.directions.T
+    np.fill_diagonal(cosines, -1)
+    nearest = np.sqrt(2 * (1 - cosines.max())) * (texture.carrier_diameter + 20e-6) / 2
+    assert nearest >= 20e-6
+
+
+def test_grains_are_spread_evenly_outside_the_cap(reference):
+    heights = read_texture(reference).directions[:, 2]
+    low, high = -math.cos(0.33), 1.0
+    counts, _ = np.histogram(heights, bins=10, range=(low, high))
+    assert counts.sum() == 4500
+    assert np.abs(counts - 450).max() < 5 * math.sqrt(450)
+
+
+def test_a_seed_makes_one_texture(tmp_path, reference):
+    make_texture(Impact(speed=1.0), tmp_path / "same.txt")
+    make_texture(Impact(speed=1.0, seed=2), tmp_path / "other.txt")
+    assert (tmp_path / "same.txt").read_bytes() == reference.read_bytes()
+    assert (tmp_path / "other.txt").read_bytes() != reference.read_bytes()
+
+
+SMALL = """# dust texture 1
+carrier_diameter 1.5e-3
+bare 0.33 0 0 -1
+# comment
+grains 3
+1 0 0 2e-5
+0 1 0 2e-5
+
+0 0 1 3e-5
+end
+"""
+
+
+def test_the_documented_format(tmp_path):
+    path = tmp_path / "t.txt"
+    path.write_text(SMALL)
+    texture = read_texture(path)
+    check_texture(texture)
+    assert texture.lines.tolist() == [6, 7, 9]
+    assert texture.diameters.tolist() == [2e-5, 2e-5, 3e-5]
+    assert texture.centres[2].tolist() == [0, 0, pytest.approx(0.765e-3)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("# dust texture 1", "# something", "line 1: not a texture file"),
+        ("carrier_diameter 1.5e-3", "carrier_diameter 0", "carrier_diameter: 0 is not above 0"),
+        ("carrier_diameter", "carrier", "line 2: 'carrier' where 'carrier_diameter' is expected"),
+        ("bare 0.33", "bare 4", "bare: 4 rad is out of range"),
+        ("0 0 -1", "0 0 0", "bare: its axis has no length"),
+        ("grains 3", "grains 4", "3 grains, but the line 'grains' says 4"),
+        ("grains 3", "grains 2.5", "grains: 2.5 is not a positive whole number"),
+        ("end\n", "", "the file is cut: no line 'end'"),
+        ("0 0 1 3e-5\nend\n", "0 0", "line 9: 2 numbers where 4 are expected"),
+        ("end\n", "end\n1 0 0 2e-5\n", "line 11: '1' after the end"),
+        ("0 1 0 2e-5", "0 nan 0 2e-5", "line 7: a number that is not finite"),
+        ("0 1 0 2e-5", "0 one 0 2e-5", "line 7: not a number: 'one'"),
+        ("0 1 0 2e-5", "0 1 0 -2e-5", "line 7: grain diameter -2e-05 is not above 0"),
+        ("0 1 0 2e-5", "0 1.01 0 2e-5", "line 7: direction of length 1.01, not a unit vector"),
+        ("0 1 0 2e-5", "0 1 0 2e-3", "line 7: grain of 0.002 m is larger than the carrier of 0.0015 m"),
+        ("0 1 0 2e-5", "0 0.1411200080598672 -0.9899924966004454 2e-5", "line 7: grain 0.1416 rad from the axis"),
+        ("0 1 0 2e-5", "0.9999 0.01414178206592083 0 2e-5", "lines 6 and 7: grains overlap by 9.25e-06 m"),
+    ],
+)
+def test_mistakes_are_named_with_their_line(command, tmp_path, old, new, words):
+    assert old in SMALL
+    (tmp_path / "t.txt").write_text(SMALL.replace(old, new))
+    process = command("texture", "check", "t.txt")
+    assert process.returncode == 2
+    assert process.stderr.count("\n") == 1
+    assert process.stderr.startswith("dustdetach texture check: t.txt: ")
+    assert words in process.stderr
+
+
+def test_a_file_cut_anywhere_is_noticed(tmp_path):
+    path = tmp_path / "t.txt"
+    for length in range(len(SMALL) - 2):
+        path.write_text(SMALL[:length])
+        with pytest.raises(InvalidInput):
+            read_texture(path)
+
+
+def test_overlaps_are_found_wherever_they_are(reference):
+    texture = read_texture(reference)
+    assert find_overlap(texture) is None
+    for index in (0, 1234, 4499):
+        texture.directions[index] = texture.directions[(index + 2000) % 4500]
+        first, second, gap = find_overlap(texture)
+        assert {first, second} == {texture.lines[index], texture.lines[(index + 2000) % 4500]}
+        assert gap == pytest.approx(-20e-6)
+        texture.directions[index] = read_texture(reference).directions[index]
+
+
+def test_the_command_makes_and_checks(command, tmp_path):
+    made = command("texture", "make", "--coverage", "0.1", "--out", "t.txt")
+    assert (made.returncode, made.stderr) == (0, "")
+    assert made.stdout == "t.txt: 2250 grains, coverage 0.100000\n"
+    checked = command("texture", "check", "t.txt")
+    assert checked.returncode == 0
+    assert "2250 grains, coverage 0.100000, bare cap 0.33 rad" in checked.stdout
