@@ -11,6 +11,7 @@ closed form of the two detachment functions for a uniform layer and an accelerat
 import math
 import os
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -184,6 +185,33 @@ def table_inputs() -> None:
                 shares += [f"{r.south:.4f}", f"{r.north:.4f}"]
             rows.append([name, f"{value:g}" if not isinstance(value, str) else value, *shares])
     show("Influence of single inputs, straight, e 0.7", "input|value|south 4|north 4|south 8|north 8", rows)
+
+
+def table_seeds() -> None:
+    rows = []
+    for speed in (4.0, 8.0):
+        ref = reference(speed, 0.7)
+        results = [run(Impact(speed=speed, seed=seed)) for seed in range(1, 31)]
+        for side in ("south", "north"):
+            values = [getattr(r, side) for r in results]
+            rows.append([f"{speed:g}", side, f"{getattr(ref, side):.4f}", f"{statistics.mean(values):.4f}",
+                         f"{statistics.stdev(values):.4f}", f"{min(values):.4f}", f"{max(values):.4f}"])
+    show("30 textures, straight, e 0.7", "v|side|ref|mean|deviation|least|largest", rows)
+
+
+def table_onset() -> None:
+    rows = []
+    for e in (0.5, 0.7, 0.9):
+        row = [f"{e}"]
+        for z0 in (0.3e-9, 0.4e-9, 0.5e-9):
+            speeds = [0.1 * k for k in range(20, 151)]
+            low, high = 0, len(speeds) - 1    # bisect: the release on the north grows with speed
+            while high - low > 1:
+                k = (low + high) // 2
+                low, high = (low, k) if run(Impact(speed=speeds[k], restitution=e, z0=z0)).north > 0 else (k, high)
+            row.append(f"{speeds[high]:.1f}")
+        rows.append(row)
+    show("Lowest speed (m/s, steps of 0.1) with any release on the north, straight", "e|z0 0.3 nm|z0 0.4 nm|z0 0.5 nm", rows)
 
 
 def table_traps() -> None:

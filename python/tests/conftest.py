@@ -1,5 +1,6 @@
 """Shared by all tests: the command, and the sweeps of both figures, run once."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -16,9 +17,11 @@ from dustdetach import figure4, figure5, read_csv, sweep
 def command(tmp_path):
     """Run ``dustdetach`` in an empty folder; returns the finished process."""
 
-    def run(*arguments, cwd=tmp_path, **kwargs):
-        words = [sys.executable, "-m", "dustdetach", *map(str, arguments)]
-        return subprocess.run(words, cwd=cwd, capture_output=True, text=True, timeout=300, **kwargs)
+    def run(*arguments, launcher=()):
+        words = [*launcher, sys.executable, "-m", "dustdetach", *map(str, arguments)]
+        # Python's copy of the environment: that of the process has what MPI left there when a test opened LAMMPS
+        environment = dict(os.environ)
+        return subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
 
     return run
 

@@ -9,11 +9,39 @@ from dustdetach import Impact
 from dustdetach.cli import main
 from dustdetach.result import KEYS
 
-INTERFACE_KEYS = """
-    method speed angle restitution coverage bare grain_diameter carrier_diameter hamaker z0 friction wall_friction
-    grain_damping seed tangential rotation grains dispersion_ratio north south normal tangential_mode contact_time
-    peak_acceleration restitution_realised timestep steps end loop_seconds wall_seconds lammps_version
-""".split()
+INTERFACE_KEYS = [
+    "method",
+    "speed",
+    "angle",
+    "restitution",
+    "coverage",
+    "bare",
+    "grain_diameter",
+    "carrier_diameter",
+    "hamaker",
+    "z0",
+    "friction",
+    "wall_friction",
+    "grain_damping",
+    "seed",
+    "tangential",
+    "rotation",
+    "grains",
+    "dispersion_ratio",
+    "north",
+    "south",
+    "normal",
+    "tangential_mode",
+    "contact_time",
+    "peak_acceleration",
+    "restitution_realised",
+    "timestep",
+    "steps",
+    "end",
+    "loop_seconds",
+    "wall_seconds",
+    "lammps_version",
+]
 
 IMPACT = ("impact", "--speed", "4", "--angle", "90", "--restitution", "0.7")
 
@@ -56,7 +84,7 @@ def test_without_json_a_summary(command, tmp_path):
         (("--coverage", "-1"), "--coverage: -1 is out of range"),
         (("--coverage", "0.7"), "--coverage: 0.7 is out of range"),
         (("--bare", "4"), "--bare: 4 is out of range"),
-        (("--grain-diameter", "0.002"), "--grain-diameter: 0.002 is out of range; allowed: above 0 and at most 0.0015"),
+        (("--grain-diameter", "0.002"), "--grain-diameter: 0.002 is out of range; allowed: above 0 and below 0.0015 m"),
         (("--carrier-diameter", "-1"), "--carrier-diameter: -1 is out of range"),
         (("--hamaker", "0"), "--hamaker: 0 is out of range"),
         (("--z0", "0"), "--z0: 0 is out of range"),

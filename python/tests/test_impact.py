@@ -33,7 +33,7 @@ def test_numbers_of_any_kind_become_plain_ones():
         ("coverage", 0.7, "at most 0.54"),
         ("bare", -0.1, "0 to below 3.14159265 rad"),
         ("bare", 3.2, "0 to below 3.14159265 rad"),
-        ("grain_diameter", 2e-3, "at most 0.0015 m"),
+        ("grain_diameter", 1.5e-3, "above 0 and below 0.0015 m"),
         ("grain_diameter", 1e-9, "grains; allowed: "),
         ("carrier_diameter", 0, "above 0 and at most 1 m"),
         ("hamaker", 0, "above 0"),

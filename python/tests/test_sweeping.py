@@ -113,9 +113,8 @@ def test_ranks_give_what_one_gives(tmp_path, command, figures_table):
     if mpirun is None:
         pytest.skip("no mpirun")
     (tmp_path / "sweep.toml").write_text("speed = [2, 4, 6, 8]\nangle = [60, 90]\n")
-    words = [mpirun, "--allow-run-as-root", "--oversubscribe", "-np", "3", sys.executable, "-m", "dustdetach"]
-    words += ["sweep", "sweep.toml", "--out", "out", "--executor", "mpi"]
-    process = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    launcher = [mpirun, "--allow-run-as-root", "--oversubscribe", "-np", "3"]
+    process = command("sweep", "sweep.toml", "--out", "out", "--executor", "mpi", launcher=launcher)
     assert process.returncode == 0, process.stderr
     assert process.stdout == "out/results.csv\n"
     table = rows(tmp_path / "out")

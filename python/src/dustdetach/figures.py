@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -27,7 +28,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 COLOUR_MAP = "viridis"
 FORMATS = ("png", "svg")
 
-_STYLE = {
+_STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 9,
     "axes.titlelocation": "left",
@@ -58,8 +59,8 @@ _LABELS = {
     "friction": ("$\\mu_f$ = {:g}", 1.0),
     "wall_friction": ("$\\mu_w$ = {:g}", 1.0),
     "grain_damping": ("$\\zeta$ = {:g}", 1.0),
-    "tangential": ("{}", None),
-    "rotation": ("rotation {}", None),
+    "tangential": ("{}", 1.0),
+    "rotation": ("rotation {}", 1.0),
     "timestep": ("$\\Delta t$ = {:g} ns", 1e9),
 }
 
@@ -175,14 +176,13 @@ def _panel(axes: Axes, curves: dict[Curve, list[Result]], share: Callable[[Resul
         )
 
 
-_POINT = {"linestyle": "none", "markerfacecolor": "white", "markersize": 6, "markeredgewidth": 1.3}
+_POINT: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "white", "markersize": 6, "markeredgewidth": 1.3}
 
 
 def _looks(count: int) -> list[tuple[Colour, str]]:
     """Colour and marker of each curve."""
-    if count <= len(COLOURS):
-        colours = list(COLOURS[:count])
-    else:
+    colours: list[Colour] = list(COLOURS[:count])
+    if count > len(COLOURS):
         colours = [plt.get_cmap(COLOUR_MAP)(0.92 * index / (count - 1)) for index in range(count)]
     return [(colour, MARKERS[index % len(MARKERS)]) for index, colour in enumerate(colours)]
 
@@ -207,4 +207,4 @@ def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Li
 
 def _label(name: str, value: float | str | bool) -> str:
     pattern, factor = _LABELS[name]
-    return pattern.format(value if factor is None else value * factor)
+    return pattern.format(value * factor if isinstance(value, float) else value)

@@ -40,7 +40,7 @@ class Impact:
         coverage: X0, summed cross-section of the grains over the carrier's surface, above 0; random
             placement jams near 0.5, see `largest_coverage`.
         bare: half-angle of the bare cap where the carrier meets the wall, rad, from 0 to below pi.
-        grain_diameter: d_d, m, at most the carrier's.
+        grain_diameter: d_d, m, below the carrier's.
         carrier_diameter: d_p, m, above 0 and at most 1.
         hamaker: A_12 of grain and carrier, J, above 0.
         z0: separation at which the van der Waals force equals the pull-off force, m, above 0.
@@ -91,7 +91,7 @@ class Impact:
         _above("angle", self.angle, 0.0, 90.0, "degrees")
         _above("restitution", self.restitution, 0.0, 1.0)
         _above("carrier_diameter", self.carrier_diameter, 0.0, 1.0, "m")
-        _above("grain_diameter", self.grain_diameter, 0.0, self.carrier_diameter, "m (the carrier's diameter)")
+        _above("grain_diameter", self.grain_diameter, 0.0, self.carrier_diameter, "m, the carrier's", included=False)
         _from("bare", self.bare, 0.0, math.pi, "rad", included=False)
         _above("coverage", self.coverage, 0.0, self.largest_coverage, "(random placement jams there)")
         _above("hamaker", self.hamaker, 0.0, 1e-15, "J")
@@ -176,9 +176,9 @@ def _one_of(name: str, value: str, allowed: tuple[str, ...]) -> None:
         raise InvalidInput(f"{option(name)}: unknown choice '{value}'; allowed: {', '.join(allowed)}")
 
 
-def _above(name: str, value: float, low: float, high: float, unit: str = "") -> None:
-    if not low < value <= high:
-        allowed = f"above {low:g} and at most {high:g} {unit}".rstrip()
+def _above(name: str, value: float, low: float, high: float, unit: str = "", *, included: bool = True) -> None:
+    if not (low < value <= high if included else low < value < high):
+        allowed = f"above {low:g} and {'at most' if included else 'below'} {high:g} {unit}".rstrip()
         raise InvalidInput(f"{option(name)}: {value:g} is out of range; allowed: {allowed}")
 
 

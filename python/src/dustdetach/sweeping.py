@@ -94,7 +94,7 @@ def sweep(
         return _sweep_on_ranks(cases, folder, build, progress)
     pending = [case for case in cases if not _is_complete(build.folder(folder, case))]
     if jobs == 1:
-        outcomes = (_attempt(folder, build, case) for case in pending)
+        outcomes: Iterator[Outcome] = (_attempt(folder, build, case) for case in pending)
     else:
         outcomes = _in_processes(folder, build, pending, jobs)
     return _collect(cases, len(pending), outcomes, folder, build, progress)

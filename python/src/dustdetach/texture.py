@@ -18,6 +18,7 @@ carrier's centre to the grain's and the grain's diameter. Lines that start with 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -198,10 +199,11 @@ def _parse(lines: list[str]) -> Texture:
     return Texture(diameter, bare, np.array(axis) / length, table[:, :3], table[:, 3], np.array(numbers))
 
 
-def _keyword(entries, keyword: str, count: int) -> list[float]:
-    number, words = next(entries, (None, None))
-    if number is None:
+def _keyword(entries: Iterator[tuple[int, list[str]]], keyword: str, count: int) -> list[float]:
+    entry = next(entries, None)
+    if entry is None:
         raise _BadLine(f"the file is cut: no line '{keyword}'")
+    number, words = entry
     if words[0] != keyword:
         raise _BadLine(f"line {number}: '{words[0]}' where '{keyword}' is expected")
     return _numbers(number, words[1:], count)

@@ -1,0 +1,96 @@
+"""What fix dust/detach costs in lammps-inputs/in.impacts: share of the loop time in free flight and in contact.
+
+    . build/environment; build/venv/bin/python benchmarks/fix_cost.py [--repeat N] [--out FILE]
+
+The deck runs with and without the fix in turn, so that whatever else the machine does hits both; medians are compared.
+Contact: all hundred carriers (0.04 to 4 m/s) touch the wall in each of the 3000 steps. Free flight: none in 50,000 steps.
+Instructions are counted besides if valgrind is there: they do not depend on the machine's load.
+"""
+
+import argparse
+import json
+import os
+import platform
+import re
+import shutil
+import statistics
+import subprocess
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
+LMP = BUILD / "bin/lmp-dust"
+CASES = {"free flight": {"flight": "100000", "limit": "50000"}, "contact": {"fastest": "4", "limit": "3000"}}
+
+
+def decks(folder: Path) -> dict[str, Path]:
+    """in.impacts without its stop and its results, as it is and without the fix."""
+    text = (ROOT / "lammps-inputs/in.impacts").read_text()
+    text = re.sub(r"^(plugin load|fix +stop|variable +finished|write_dump).*\n", "", text, flags=re.M)
+    without = re.sub(r"^fix +dust (.*&\n)*.*\n", "", text, flags=re.M)
+    without = re.sub(r" f_dust\S*", "", without)
+    paths = {"with": folder / "in.with", "without": folder / "in.without"}
+    paths["with"].write_text(text)
+    paths["without"].write_text(without)
+    return paths
+
+
+def command(deck: Path, variables: dict[str, str]) -> list[str]:
+    words = [str(LMP), "-in", str(deck), "-log", "none"]
+    for name, value in variables.items():
+        words += ["-var", name, value]
+    return words
+
+
+def loop_time(deck: Path, variables: dict[str, str]) -> float:
+    done = subprocess.run(command(deck, variables), capture_output=True, text=True, check=True, cwd=deck.parent)
+    return float(re.search(r"^Loop time of (\S+)", done.stdout, re.M)[1])
+
+
+def instructions(deck: Path, variables: dict[str, str]) -> tuple[int, int]:
+    """Instructions of the fix's post_force and of the whole time loop."""
+    out = deck.parent / "callgrind.out"
+    subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", *command(deck, variables)],
+                   capture_output=True, check=True, cwd=deck.parent)
+    table = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)],
+                           capture_output=True, text=True, check=True).stdout
+
+    def count(function: str) -> int:
+        return int(re.search(rf"^ *([\d,]+) .*{re.escape(function)}", table, re.M)[1].replace(",", ""))
+
+    return count("FixDustDetach::post_force(int)"), count("Verlet::run(int)")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--repeat", type=int, default=9)
+    parser.add_argument("--out", type=Path)
+    args = parser.parse_args()
+    cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
+    version = subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout.splitlines()[1].split(" - ")[1]
+    result: dict = {"machine": f"{cpu[1] if cpu else platform.processor()}, {os.cpu_count()} cores", "lammps": version,
+                    "compiler": "Release, as ./bootstrap build", "repeats": args.repeat}
+    with tempfile.TemporaryDirectory() as folder:
+        paths = decks(Path(folder))
+        for case, variables in CASES.items():
+            times: dict[str, list[float]] = {"with": [], "without": []}
+            for _ in range(args.repeat):
+                for which, path in paths.items():
+                    times[which].append(loop_time(path, variables))
+            with_fix, rest = (statistics.median(times[which]) for which in ("with", "without"))
+            row = {"loop_seconds_with": with_fix, "loop_seconds_without": rest,
+                   "fix_share_of_loop": (with_fix - rest) / with_fix, "fix_against_rest": (with_fix - rest) / rest}
+            if shutil.which("valgrind"):
+                fix, loop = instructions(paths["with"], variables | {"limit": str(min(int(variables["limit"]), 3000))})
+                row |= {"instructions_fix": fix, "instructions_loop": loop, "instructions_fix_share": fix / loop}
+            result[case] = row
+            print(f"{case}: the fix takes {100 * row['fix_share_of_loop']:.1f} % of the loop time, "
+                  f"{row['fix_against_rest']:.2f} of the rest of the step"
+                  + (f"; {100 * row['instructions_fix_share']:.1f} % of the instructions" if "instructions_fix" in row else ""))
+    if args.out:
+        args.out.write_text(json.dumps(result, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

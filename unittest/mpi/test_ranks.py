@@ -1,0 +1,68 @@
+"""The same grains leave on 1, 2 and 4 ranks, with newton on and off, and after a restart on another number of ranks."""
+
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+BUILD = Path(os.environ.get("DUST_BUILD_DIR", Path(__file__).parents[2] / "build"))
+DECK = Path(__file__).with_name("in.ranks")
+AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+def run(folder: Path, ranks: int, **variables: str) -> tuple[str, str, list[str]]:
+    """Final state of the carriers, thermo output and events (sorted) of the deck on so many ranks."""
+    command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-in", str(DECK), "-log", "none"]
+    for name, value in variables.items():
+        command += ["-var", name, value]
+    done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    thermo = re.search(r"^ *Step .*?(?=^Loop time)", done.stdout, re.M | re.S)
+    assert thermo, done.stdout
+    events = (folder / "ranks.txt.events").read_text().splitlines()
+    return (folder / "ranks.txt").read_text(), thermo[0], sorted(line for line in events if re.match(r"\d+ \d+ \d+ \d", line))
+
+
+@pytest.fixture(scope="module")
+def one_rank(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("one"), 1)
+
+
+def test_carriers_change_ranks_in_contact(one_rank):
+    """What makes the other tests worth something: carriers cross x = 0.01 while they touch the wall."""
+    state, thermo, events = one_rank
+    rows = [line.split() for line in state.splitlines()[9:]]
+    assert len(rows) == 8
+    assert all(float(row[3]) * float(row[9]) > 25e-6 for row in rows)    # farther along the wall than to the border
+    assert len(events) > 10000
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+@pytest.mark.parametrize("newton", ["off", "on"])
+def test_same_on_any_number_of_ranks(one_rank, tmp_path, ranks, newton):
+    state, thermo, events = run(tmp_path, ranks, newton=newton)
+    assert state == one_rank[0]
+    assert thermo == one_rank[1]
+    assert events == one_rank[2]
+
+
+@pytest.fixture(scope="module")
+def one_rank_restarted(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("restarted")
+    run(folder, 1, steps="1500", save="yes")
+    return run(folder, 1, start="restart")
+
+
+def test_restart_in_contact_ends_as_the_whole_run(one_rank, one_rank_restarted):
+    """The same grains; the trajectory itself changes by 1e-10, as LAMMPS recomputes damping forces with other velocities."""
+    assert one_rank_restarted[1].splitlines()[-1] == one_rank[1].splitlines()[-1]
+
+
+@pytest.mark.parametrize("before, after", [(1, 4), (4, 1), (2, 4)])
+def test_restart_in_contact_on_other_ranks(one_rank_restarted, tmp_path, before, after):
+    run(tmp_path, before, steps="1500", save="yes")
+    state, thermo, _ = run(tmp_path, after, start="restart")
+    assert state == one_rank_restarted[0]
+    assert thermo == one_rank_restarted[1]
