@@ -25,13 +25,13 @@ double dot(const double *a, const double *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// p = lambda q + e with e normal to q; returns lambda and the square of |e|
+// p = lambda q + e with e normal to q, q2 = |q|^2; returns lambda and |e|^2
 struct Split {
   double lambda, aside2;
 };
-Split split(const double *p, const double *q)
+Split split(const double *p, const double *q, double q2)
 {
-  const double lambda = dot(p, q) / dot(q, q);
+  const double lambda = dot(p, q) / q2;
   const double e[3] = {p[0] - lambda * q[0], p[1] - lambda * q[1], p[2] - lambda * q[2]};
   return {lambda, dot(e, e)};
 }
@@ -177,7 +177,7 @@ bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, 
   const double size2 = dot(a, a);
   Split s = {INF, INF};
   if (peak >= 0 && size2 <= peak2) {
-    s = split(a, &extreme[3 * peak]);
+    s = split(a, &extreme[3 * peak], peak2);
     if (is_between(s, peak2)) return false;
   }
   const double g[3] = {-a[0], -a[1], -a[2]};
@@ -210,7 +210,8 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
     along = dot(g, window.axis);
   }
 
-  for (; window.next < window.candidates.size() && window.candidates[window.next].from <= along; window.next++)
+  const int reached = window.step_of(along);
+  for (; window.next < window.candidates.size() && window.candidates[window.next].from <= reached; window.next++)
     window.close.push_back(window.candidates[window.next].bit);
   for (size_t k = 0; k < window.close.size();) {
     const int bit = window.close[k];
@@ -224,7 +225,7 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
 }
 
 /* ----------------------------------------------------------------------
-   window around g: about 500 grains of 4500 to come, whatever |g|, as the number that holds goes with 1/|g|
+   window from g on: about 500 grains of 4500 to come, whatever |g|, as the number that holds goes with 1/|g|
 ------------------------------------------------------------------------- */
 
 void Collision::open_window(const DetachmentFunctions &df, const double *g, const uint64_t *attached)
@@ -232,13 +233,15 @@ void Collision::open_window(const DetachmentFunctions &df, const double *g, cons
   constexpr double ROUND_OFF = 1.0e-9;
   const double size = std::sqrt(dot(g, g));
   for (int d = 0; d < 3; d++) window.axis[d] = g[d] / size;
+  window.from = size;
   window.along = size * (1.0 + 0.3 * size / df.least);
   window.aside = size * window.width;
-  window.candidates.clear();
   window.close.clear();
   window.next = 0;
   const double most = window.along * (1.0 + ROUND_OFF), aside = window.aside * (1.0 + ROUND_OFF);
 
+  window.found.clear();
+  int count[Window::STEPS + 1] = {};
   for (int p = 0; p < df.words(); p++) {
     const auto &patch = df.patches[p];
     if (!attached[p] || std::max(0.0, most * (dot(window.axis, patch.centre) + patch.radius)) + aside <= patch.hold)
@@ -247,11 +250,22 @@ void Collision::open_window(const DetachmentFunctions &df, const double *g, cons
       const int bit = p * PATCH + k;
       const double u = df.normal(bit, window.axis), short_of = df.hold[bit] - aside;
       if (std::max(0.0, most * u) <= short_of) return;
-      window.candidates.push_back({short_of > 0.0 ? short_of / u * (1.0 - ROUND_OFF) : 0.0, bit});
+      const int from = short_of > 0.0 ? window.step_of(short_of / u * (1.0 - ROUND_OFF)) : 0;
+      window.found.push_back({from, bit});
+      count[from + 1]++;
     });
   }
-  std::sort(window.candidates.begin(), window.candidates.end(),
-            [](const Window::Candidate &a, const Window::Candidate &b) { return a.from < b.from; });
+  // in the order of steps along the axis
+  std::partial_sum(count, count + Window::STEPS + 1, count);
+  window.candidates.resize(window.found.size());
+  for (const auto &candidate : window.found) window.candidates[count[candidate.from]++] = candidate;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int Collision::Window::step_of(double force) const
+{
+  return std::clamp(static_cast<int>((force - from) / (along - from) * STEPS), 0, STEPS - 1);
 }
 
 /* ----------------------------------------------------------------------
@@ -326,7 +340,7 @@ int Collision::rolling_grains(const DetachmentFunctions &df, const uint64_t *att
 void Collision::remember(const double *a, double size2)
 {
   int n = static_cast<int>(extreme.size() / 3);
-  const auto covers = [](const double *q, double q2, const double *p) { return is_between(split(p, q), q2); };
+  const auto covers = [](const double *q, double q2, const double *p) { return is_between(split(p, q, q2), q2); };
   if (n > peak + 1) {    // step() has compared a with the peak
     const double *last = &extreme[3 * (n - 1)];
     if (covers(last, dot(last, last), a)) return;

@@ -98,8 +98,8 @@ struct Detachment {
  * In most steps no grain can change, and little is done in the others:
  * - A grain that holds at q holds at lambda q + e too if lambda <= 1 and |e| <= (1 - lambda) c: unloading needs no look.
  * - While g stays in a window, no farther than S along an axis and E from it, only those grains can lift off that would
- *   at S with E to help. They are listed by the force along the axis from which each could, and each step sees only the
- *   head of that list. A window is opened where g leaves the last one.
+ *   at S with E to help. They are listed by the force along the axis from which each could, and a step of time
+ *   sees only the head of that list. A window is opened where g leaves the last one.
  * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
  *   holds, g_t + k g_n is a convex function of g, so the accelerations on the hull of the history decide. */
 class Collision {
@@ -144,15 +144,17 @@ class Collision {
   double peak2;                     // square of its size
 
   struct Window {
-    double axis[3], along, aside;    // S = along, E = aside
-    double width;                    // E/|g| for the next window: wider if g left this one sidewards
+    double axis[3], from, along, aside;    // from where it was opened to S = along, E = aside
+    double width;                          // E/|g| for the next window: wider if g left this one sidewards
+    static constexpr int STEPS = 256;      // from `from` to `along`
+    int step_of(double force) const;
     struct Candidate {
-      double from;    // force along the axis from which the grain could lift off
+      int from;    // step from which the grain could lift off
       int bit;
     };
-    std::vector<Candidate> candidates;    // by from
-    size_t next;                          // first that cannot lift off yet
-    std::vector<int> close;               // could lift off now
+    std::vector<Candidate> found, candidates;    // as found; by step
+    size_t next;                                 // first that cannot lift off yet
+    std::vector<int> close;                      // could lift off now
   } window;
 
   void open_window(const DetachmentFunctions &functions, const double *g, const uint64_t *attached);

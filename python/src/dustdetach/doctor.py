@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from .errors import LammpsMissing
-from .places import find_deck, find_plugin, lammps_library, lammps_module
+from .places import find_deck, find_plugin, lammps_library
 from .runner import DECK
-from .session import FIX_STYLE, QUIET, load_plugin
+from .session import FIX_STYLE, load_plugin, open_lammps
 from .version import __version__
 
 #: oldest LAMMPS with granular sub-models that this package is tested with
@@ -42,10 +42,9 @@ def examine() -> list[Finding]:
         Finding("Python", f"{platform.python_version()}, {_packages('numpy', 'matplotlib', 'mpi4py')}"),
     ]
     try:
-        module = lammps_module()
         findings.append(Finding("LAMMPS library", str(lammps_library())))
-        lmp = module.lammps(cmdargs=list(QUIET))
-    except (LammpsMissing, OSError, RuntimeError, AttributeError) as error:
+        lmp = open_lammps()
+    except LammpsMissing as error:
         findings.append(Finding("LAMMPS", f"{error}", ok=False))
     else:
         findings += _lammps(lmp)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .impact import Impact
-from .places import find_deck, plugin_if_any
+from .places import find_deck
 from .result import Result
 from .session import lammps_session
 
@@ -56,8 +56,9 @@ def run(impact: Impact, *, comm: Any = None, events: Path | None = None) -> Resu
     started = time.perf_counter()
     parameters = asdict(impact)
     variables = {name: parameters[name] for name in _VARIABLES}
-    # the deck's own line "plugin load" finds the plugin that is loaded already
-    variables |= {name: path for name, path in (("plugin", plugin_if_any()), ("events", events)) if path}
+    if events is not None:
+        # quoted for the deck's command in which the name ends up
+        variables["events"] = f'"{events}"'
     deck = find_deck(DECK)
     with lammps_session(variables, comm) as lmp:
         lmp.file(str(deck))

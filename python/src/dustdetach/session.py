@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from ctypes import create_string_buffer
+from functools import cache
 from typing import Any
 
 from .errors import InvalidInput, LammpsMissing
@@ -31,20 +33,48 @@ def lammps_session(variables: Mapping[str, Any] | None = None, comm: Any = None)
     arguments = list(QUIET)
     for name, value in (variables or {}).items():
         arguments += ["-var", name, f"{value!r}" if isinstance(value, float) else str(value)]
-    module = lammps_module()
-    try:
-        lmp = module.lammps(cmdargs=arguments, comm=comm)
-    except (OSError, RuntimeError, AttributeError) as error:
-        raise LammpsMissing(f"LAMMPS does not start: {error}") from None
+    lmp = open_lammps(arguments, comm)
     try:
         load_plugin(lmp)
         yield lmp
-    except Exception as error:
-        if not is_lammps_error(error):
-            raise
-        raise InvalidInput(error_line(error)) from None
+    except LammpsRefusal as error:
+        raise InvalidInput(str(error)) from None
     finally:
         lmp.close()
+
+
+class LammpsRefusal(Exception):
+    """LAMMPS' own error message on one line, without its place in the source and the echo of the input."""
+
+    def __init__(self, message: str) -> None:
+        text = re.sub(r"^ERROR( on proc \d+)?: ", "", message.strip().split("\n")[0])
+        super().__init__(re.sub(r" \([\w./+-]+:\d+\)", "", text))
+
+
+def open_lammps(arguments: Sequence[str] = QUIET, comm: Any = None) -> Any:
+    """Open LAMMPS without the package DUST; its errors come as `LammpsRefusal`.
+
+    Raises:
+        LammpsMissing: LAMMPS cannot be found or does not start.
+    """
+    try:
+        return _lammps_class()(cmdargs=list(arguments), comm=comm)
+    except (OSError, RuntimeError, AttributeError) as error:
+        raise LammpsMissing(f"LAMMPS does not start: {error}") from None
+
+
+@cache
+def _lammps_class() -> type:
+    class Lammps(lammps_module().lammps):  # type: ignore[misc]
+        """LAMMPS' class with whole error messages: 4Feb2025 cuts them after 99 characters."""
+
+        @property
+        def _lammps_exception(self) -> LammpsRefusal:
+            message = create_string_buffer(4096)
+            self.lib.lammps_get_last_error_message(self.lmp, message, len(message))
+            return LammpsRefusal(message.value.decode())
+
+    return Lammps
 
 
 def load_plugin(lmp: Any) -> None:
@@ -60,22 +90,10 @@ def load_plugin(lmp: Any) -> None:
         raise LammpsMissing("this LAMMPS is built without the package PLUGIN; run ./bootstrap build")
     try:
         lmp.command(f'plugin load "{plugin}"')
-    except Exception as error:
-        raise LammpsMissing(f"the plugin {plugin} refuses this LAMMPS: {error_line(error)}") from None
+    except LammpsRefusal as error:
+        raise LammpsMissing(f"the plugin {plugin} refuses this LAMMPS: {error}") from None
     if not lmp.has_style("fix", FIX_STYLE):
         raise LammpsMissing(
             f"the plugin {plugin} does not load into LAMMPS {lmp.version()}: it must be built for the same version; "
             "run ./bootstrap build"
         )
-
-
-def is_lammps_error(error: Exception) -> bool:
-    """Whether LAMMPS raised it: its module raises an ``Exception`` of no narrower kind with LAMMPS' message."""
-    return type(error).__name__ in ("Exception", "MPIAbortException") and "ERROR" in str(error)
-
-
-def error_line(error: Exception) -> str:
-    """What LAMMPS said, on one line, without its place in the source and the echo of the input."""
-    text = getattr(error, "message", str(error)).strip().split("\n")[0]
-    text = re.sub(r"^ERROR( on proc \d+)?: ", "", text)
-    return re.sub(r" \([\w./+-]+:\d+\)", "", text)
