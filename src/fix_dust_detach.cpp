@@ -543,7 +543,7 @@ void FixDustDetach::record(int i)
 
     const int number = functions->grain(d.bit);
     const Dust::Grain &grain = texture.grains[number];
-    std::array<double, NROW> row = {double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0,
+    Row row = {double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0,
                                     2.0 * grain.radius};
     for (int k = 0; k < 3; k++) {
       row[5 + k] = atom->x[i][k] + (carrier_radius + grain.radius) * grain.n[k];
@@ -566,10 +566,17 @@ void FixDustDetach::close_window()
   }
   rows.swap(events);
   events.clear();
+  show_rows();
+}
+
+// hands the rows to LAMMPS; as they are not empty, they are to be replaced by those of the next windows
+void FixDustDetach::show_rows()
+{
   row_pointers.clear();
   for (auto &row : rows) row_pointers.push_back(row.data());
   array_local = row_pointers.data();
   size_local_rows = static_cast<int>(rows.size());
+  if (!rows.empty() || !events.empty()) open_windows = std::max(open_windows, events.empty() ? 1 : 2);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -759,29 +766,59 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   restart: totals, per carrier what a migrating carrier takes along
+   restart: totals and the rows of two windows; per carrier what a migrating carrier takes along
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  double list[1 + sizeof(Totals) / sizeof(double)];
-  list[0] = texture_checksum;
-  MPI_Reduce(&mine, &list[1], sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
-  if (comm->me == 0) {
-    const int size = sizeof(list);
-    fwrite(&size, sizeof(int), 1, fp);
-    fwrite(list, sizeof(list), 1, fp);
+  std::vector<double> list = {texture_checksum};
+  Totals total;
+  MPI_Reduce(&mine, &total, sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
+  const auto *p = reinterpret_cast<const double *>(&total);
+  list.insert(list.end(), p, p + sizeof(Totals) / sizeof(double));
+  for (const auto *window : {&events, &rows}) {
+    const std::vector<double> all = gather(*window);
+    list.push_back(double(all.size()));
+    list.insert(list.end(), all.begin(), all.end());
   }
+  if (comm->me == 0) {
+    const int size = static_cast<int>(list.size() * sizeof(double));
+    fwrite(&size, sizeof(int), 1, fp);
+    fwrite(list.data(), size, 1, fp);
+  }
+}
+
+// the rows of all ranks, on rank 0
+std::vector<double> FixDustDetach::gather(const std::vector<Row> &window) const
+{
+  const int count = static_cast<int>(window.size() * NROW);
+  std::vector<int> counts(comm->nprocs), offsets(comm->nprocs);
+  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
+  std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
+  std::vector<double> all(comm->me == 0 ? offsets.back() + counts.back() : 0);
+  MPI_Gatherv(window.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, 0, world);
+  return all;
 }
 
 void FixDustDetach::restart(char *buf)
 {
-  double checksum;
-  std::memcpy(&checksum, buf, sizeof(double));
+  const auto *p = reinterpret_cast<const double *>(buf);
+  const double checksum = *p++;
   if (checksum != 0.0 && functions && checksum != texture_checksum)
     error->all(FLERR, "Fix dust/detach texture is not the one of the restart file");
   mine = Totals{};
-  if (comm->me == 0) std::memcpy(&mine, buf + sizeof(double), sizeof(Totals));
+  events.clear();
+  rows.clear();
+  if (comm->me == 0) {
+    std::memcpy(&mine, p, sizeof(Totals));
+    p += sizeof(Totals) / sizeof(double);
+    for (auto *window : {&events, &rows}) {
+      window->resize(static_cast<size_t>(*p++) / NROW);
+      std::memcpy(window->data(), p, window->size() * sizeof(Row));
+      p += window->size() * NROW;
+    }
+  }
+  show_rows();
   newcomers = true;
 }
 

@@ -110,11 +110,14 @@ class FixDustDetach : public Fix {
   // detachments
   std::vector<Dust::Detachment> detached;              // of one carrier in one step
   static constexpr int NROW = 11;
-  std::vector<std::array<double, NROW>> events, rows;  // of this window and of the last complete one
+  using Row = std::array<double, NROW>;
+  std::vector<Row> events, rows;    // of this window and of the last complete one
   std::vector<double *> row_pointers;
   void record(int);
   int open_windows;    // windows to be closed until all of window_mass and its column are 0 again
   void close_window();
+  void show_rows();
+  std::vector<double> gather(const std::vector<Row> &) const;
 
   int room;    // for a collision in what a carrier takes along when it changes ranks
   void make_room(int);

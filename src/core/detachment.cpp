@@ -213,6 +213,7 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
   const int reached = window.step_of(along);
   for (; window.next < window.candidates.size() && window.candidates[window.next].from <= reached; window.next++)
     window.close.push_back(window.candidates[window.next].bit);
+  const auto before = detached.size();
   for (size_t k = 0; k < window.close.size();) {
     const int bit = window.close[k];
     if (df.normal(bit, g) > df.hold[bit]) {
@@ -222,6 +223,8 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
     } else
       k++;
   }
+  // the order of windows must not show, as a restart opens another one
+  std::sort(detached.begin() + before, detached.end(), [](const Detachment &a, const Detachment &b) { return a.bit < b.bit; });
 }
 
 /* ----------------------------------------------------------------------
