@@ -19,6 +19,16 @@ inline double surface_energy(double hamaker, double z0)
   return hamaker / (18.0 * PI * z0 * z0);
 }
 
+/*! Van der Waals force of two spheres without a neck, A R/(6 (z0 + h)^2) at the gap h >= 0, positive = attraction.
+ *  (The paper prints R^2, which is no force.)
+ *
+ * \param r12  effective radius, the sphere's against a flat wall */
+inline double hamaker_force(double hamaker, double z0, double r12, double gap)
+{
+  const double z = z0 + gap;
+  return hamaker * r12 / (6.0 * z * z);
+}
+
 }    // namespace Dust
 
 #endif

@@ -38,6 +38,33 @@ inline double equilibrium_contact_radius(double gamma, double r12, double modulu
   return std::cbrt(9.0 * PI * gamma * r12 * r12 / modulus);
 }
 
+/*! Overlap without load, delta_0 = a0^2/(3 R_12) */
+inline double equilibrium_overlap(double a0, double r12)
+{
+  return a0 * a0 / (3.0 * r12);
+}
+
+/*! Gap to which the neck stretches before it breaks, delta_c = a0^2/(2 6^(1/3) R_12) */
+inline double breaking_gap(double a0, double r12)
+{
+  return a0 * a0 / (2.0 * 1.8171205928321397 * r12);    // 6^(1/3)
+}
+
+/*! Contact radius a/a0 on the stable branch from the overlap: the largest x with
+ *  delta/delta_c = 6^(1/3) (2 x^2 - (4/3) sqrt(x)).
+ *
+ * A quartic in sqrt(x), solved by its resolvent cubic in a form without cancellation, and one Newton step.
+ * \param d  delta/delta_c, at least -1; the branch ends there and lower values are taken for -1
+ * \return   x, from 6^(-2/3) on */
+double jkr_contact_radius(double d);
+
+/*! Force F/F_c = 4 (x^3 - x^(3/2)) on the branch at x = a/a0; negative pulls */
+inline double jkr_force(double x)
+{
+  const double y3 = x * std::sqrt(x);
+  return 4.0 * y3 * (y3 - 1.0);
+}
+
 }    // namespace Dust
 
 #endif
