@@ -4,14 +4,9 @@
 
 #include "fix_dust_detach.h"
 
-#include "core/hamaker.h"
-#include "core/jkr.h"
-
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
@@ -20,29 +15,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <numeric>
-#include <sstream>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double UNSET = -1.0;
-
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), carrier_radius(0.0), texture_checksum(0.0), state(nullptr), attached(nullptr),
-    window_mass(nullptr), newcomers(true), mine{}, sums_step(-1), under_way_step(-1), open_windows(0)
+    Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
+    attached(nullptr), window_mass(nullptr), newcomers(true), mine{}, sums_step(-1), under_way_step(-1), open_windows(0)
 {
-  if (!atom->radius_flag || !atom->rmass_flag)
-    error->all(FLERR, "Fix dust/detach needs atoms with radius and mass of their own, such as atom_style sphere");
-  if (domain->dimension != 3) error->all(FLERR, "Fix dust/detach needs dimension 3");
-  // elsewhere LAMMPS' own granular models do not convert, nor does set density
-  if (force->ftm2v != 1.0 || force->mvv2e != 1.0 || force->nktv2p != 1.0 || force->mv2d != 1.0)
-    error->all(FLERR, "Fix dust/detach works with units si, cgs, lj, micro or nano, not with units {}, in which force is not "
-               "mass times acceleration", update->unit_style);
-
   parse(narg, arg);
 
   scalar_flag = vector_flag = global_freq = 1;
@@ -60,7 +43,8 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
   grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
-  if (find_carriers()) build();
+  carrier_radius = options.carrier_radius(igroup);
+  if (carrier_radius > 0.0) build();
   // last, as an error above leaves no fix behind that could be called back
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -80,241 +64,51 @@ FixDustDetach::~FixDustDetach()
   memory->destroy(array_atom);
 }
 
-/* ----------------------------------------------------------------------
-   input
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixDustDetach::parse(int narg, char **arg)
 {
-  input.diameter = 0.0;
-  input.density = input.surface_energy = input.elastic[0] = input.friction = UNSET;
-  input.every = 1;
-  bool bare_given = false;
-
-  const auto word = [&](int iarg) { return std::string(arg[iarg]); };
-  const auto need = [&](int iarg, int n) {
-    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix dust/detach " + word(iarg), error);
-  };
-  const auto number = [&](int iarg) { return utils::numeric(FLERR, arg[iarg], false, lmp); };
-  // value after a keyword that must lie in a range
-  const auto checked = [&](int iarg, int k, bool ok, const char *range) {
-    if (!ok) error->all(FLERR, "Fix dust/detach {} value {} must be {}", arg[iarg], arg[iarg + k], range);
-  };
-  const auto positive = [&](int iarg, int k) {
-    const double value = number(iarg + k);
-    checked(iarg, k, value > 0.0 && std::isfinite(value), "above 0");
-    return value;
-  };
-  // keyword of which a later version will know more
-  const auto only = [&](int iarg, const char *allowed) {
-    if (word(iarg + 1) != allowed)
-      error->all(FLERR, "Fix dust/detach {} {} is not available: use {} {}", arg[iarg], arg[iarg + 1], arg[iarg], allowed);
-  };
+  friction = strcmp(update->unit_style, "si") == 0 ? 0.3 : -1.0;    // the reference case, as in DustOptions
+  every = 1;
 
   int iarg = 3;
   while (iarg < narg) {
-    const std::string key = word(iarg);
-    if (key == "texture") {
-      iarg = parse_texture(iarg, narg, arg);
-    } else if (key == "bare") {
-      need(iarg, 1);
-      input.bare.half_angle = number(iarg + 1);
-      checked(iarg, 1, input.bare.half_angle >= 0.0 && input.bare.half_angle < 3.14159265358979, "at least 0 and below pi");
-      bare_given = true;
-      iarg += 2;
-      if (iarg < narg && utils::is_double(arg[iarg])) {
-        if (iarg + 2 >= narg) utils::missing_cmd_args(FLERR, "fix dust/detach bare", error);
-        double *axis = input.bare.axis;
-        for (int d = 0; d < 3; d++) axis[d] = number(iarg + d);
-        const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-        if (!(length > 0.0 && std::isfinite(length))) error->all(FLERR, "Fix dust/detach bare axis must not be 0 0 0");
-        for (int d = 0; d < 3; d++) axis[d] /= length;
-        iarg += 3;
-      }
-    } else if (key == "density") {
-      need(iarg, 1);
-      input.density = positive(iarg, 1);
-      iarg += 2;
-    } else if (key == "hamaker") {
-      need(iarg, 2);
-      input.surface_energy = Dust::surface_energy(positive(iarg, 1), positive(iarg, 2));
-      iarg += 3;
-    } else if (key == "surface") {
-      need(iarg, 1);
-      input.surface_energy = positive(iarg, 1);
-      iarg += 2;
-    } else if (key == "elastic") {
-      need(iarg, 4);
-      for (int k = 0; k < 4; k += 2) {
-        input.elastic[k] = positive(iarg, k + 1);
-        input.elastic[k + 1] = number(iarg + k + 2);
-        checked(iarg, k + 2, input.elastic[k + 1] > -1.0 && input.elastic[k + 1] <= 0.5, "above -1 and at most 0.5");
-      }
-      iarg += 5;
-    } else if (key == "friction") {
-      need(iarg, 1);
-      input.friction = number(iarg + 1);
-      checked(iarg, 1, input.friction >= 0.0 && std::isfinite(input.friction), "at least 0");
-      iarg += 2;
+    const int next = options.parse(iarg, narg, arg);
+    if (next > iarg) {
+      iarg = next;
+      continue;
+    }
+    const std::string key = arg[iarg];
+    if (key == "stiffen") error->all(FLERR, "Fix dust/detach stiffen is not available yet");
+    if (key != "friction" && key != "tangential" && key != "criteria" && key != "every" && key != "rotation" && key != "mass" &&
+        key != "emit")
+      error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, density, hamaker, surface, elastic, friction, "
+                 "tangential, criteria, every, write, rotation, orientation, mass or emit", key);
+    options.need(iarg, 1, narg, arg);
+    const std::string value = arg[iarg + 1];
+    if (key == "friction") {
+      friction = options.number(iarg, 1, arg);
+      options.check(iarg, 1, arg, friction >= 0.0 && std::isfinite(friction), "at least 0");
     } else if (key == "tangential") {
-      need(iarg, 1);
-      const std::string mode = word(iarg + 1);
-      if (mode == "estimate") input.criteria.tangential = Dust::Criteria::ESTIMATE;
-      else if (mode == "frictionless") input.criteria.tangential = Dust::Criteria::FRICTIONLESS;
-      else if (mode == "off") input.criteria.tangential = Dust::Criteria::OFF;
-      else error->all(FLERR, "Fix dust/detach tangential value {} must be estimate, frictionless or off", mode);
-      iarg += 2;
+      if (value == "integrate") options.only(iarg, arg, "estimate");
+      options.check(iarg, 1, arg, value == "estimate" || value == "frictionless" || value == "off",
+                    "estimate, frictionless or off");
+      criteria.tangential = value == "estimate" ? Dust::Criteria::ESTIMATE
+          : value == "frictionless"             ? Dust::Criteria::FRICTIONLESS
+                                                : Dust::Criteria::OFF;
     } else if (key == "criteria") {
-      need(iarg, 1);
-      const std::string mode = word(iarg + 1);
-      checked(iarg, 1, mode == "liftoff" || mode == "ibrahim", "liftoff or ibrahim");
-      input.criteria.ibrahim = mode == "ibrahim";
-      iarg += 2;
+      options.check(iarg, 1, arg, value == "liftoff" || value == "ibrahim", "liftoff or ibrahim");
+      criteria.ibrahim = value == "ibrahim";
     } else if (key == "every") {
-      need(iarg, 1);
-      input.every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      checked(iarg, 1, input.every > 0, "at least 1");
-      iarg += 2;
-    } else if (key == "write") {
-      need(iarg, 1);
-      input.write = word(iarg + 1);
-      iarg += 2;
-    } else if (key == "rotation" || key == "mass") {
-      need(iarg, 1);
-      only(iarg, "no");
-      iarg += 2;
-    } else if (key == "orientation") {
-      need(iarg, 1);
-      only(iarg, "same");
-      iarg += 2;
-    } else if (key == "emit") {
-      need(iarg, 1);
-      only(iarg, "none");
-      iarg += 2;
-    } else if (key == "distribution" || key == "stiffen") {
-      error->all(FLERR, "Fix dust/detach {} is not available yet", key);
-    } else
-      error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, density, hamaker, surface, elastic, "
-                 "friction, tangential, criteria, every, write, rotation, orientation, mass or emit", key);
-  }
-
-  if (input.diameter == 0.0 && input.file.empty()) error->all(FLERR, "Fix dust/detach needs keyword texture");
-  if (!input.file.empty() && bare_given)
-    error->all(FLERR, "Fix dust/detach bare goes with texture monolayer: a texture file has its own bare cap");
-  set_defaults();
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixDustDetach::parse_texture(int iarg, int narg, char **arg)
-{
-  if (input.diameter != 0.0 || !input.file.empty()) error->all(FLERR, "Fix dust/detach texture is given twice");
-  if (iarg + 2 >= narg) utils::missing_cmd_args(FLERR, "fix dust/detach texture", error);
-  const std::string source = arg[iarg + 1];
-
-  if (source == "file") {
-    input.file = arg[iarg + 2];
-    // rank 0 reads, all parse the same text
-    int size = -1;
-    if (comm->me == 0) {
-      std::ifstream in(input.file);
-      std::ostringstream all;
-      if (in && all << in.rdbuf()) input.text = all.str();
-      if (in) size = static_cast<int>(input.text.size());
+      every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      options.check(iarg, 1, arg, every > 0, "at least 1");
+    } else {
+      options.only(iarg, arg, key == "emit" ? "none" : "no");
     }
-    MPI_Bcast(&size, 1, MPI_INT, 0, world);
-    if (size < 0) error->all(FLERR, "Fix dust/detach cannot read texture file {}", input.file);
-    input.text.resize(size);
-    MPI_Bcast(&input.text[0], size, MPI_CHAR, 0, world);
-    try {
-      std::istringstream in(input.text);
-      texture = Dust::read_texture(in);
-    } catch (Dust::TextureError &e) {
-      error->all(FLERR, "Fix dust/detach texture file {}: {}", input.file, e.what());
-    }
-    return iarg + 3;
+    iarg += 2;
   }
-
-  if (source != "monolayer")
-    error->all(FLERR, "Fix dust/detach texture source {} must be file or monolayer", source);
-  input.diameter = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
-  if (!(input.diameter > 0.0 && std::isfinite(input.diameter)))
-    error->all(FLERR, "Fix dust/detach texture monolayer diameter {} must be above 0", arg[iarg + 2]);
-  input.coverage = UNSET;
-  input.seed = 0;
-  for (iarg += 3; iarg + 1 < narg; iarg += 2) {
-    if (strcmp(arg[iarg], "coverage") == 0) {
-      input.coverage = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(input.coverage > 0.0 && std::isfinite(input.coverage)))
-        error->all(FLERR, "Fix dust/detach coverage {} must be above 0", arg[iarg + 1]);
-    } else if (strcmp(arg[iarg], "seed") == 0) {
-      input.seed = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (input.seed <= 0) error->all(FLERR, "Fix dust/detach seed {} must be above 0", arg[iarg + 1]);
-    } else
-      break;
-  }
-  if (input.coverage == UNSET) error->all(FLERR, "Fix dust/detach texture monolayer needs coverage");
-  if (input.seed == 0) error->all(FLERR, "Fix dust/detach texture monolayer needs seed");
-  return iarg;
-}
-
-/* ----------------------------------------------------------------------
-   the reference case, calcium carbonate on stainless steel, is known in SI units only
-------------------------------------------------------------------------- */
-
-void FixDustDetach::set_defaults()
-{
-  const bool si = strcmp(update->unit_style, "si") == 0;
-  const auto absent = [&](double value, const char *key) {
-    if (value == UNSET && !si)
-      error->all(FLERR, "Fix dust/detach needs keyword {} (it has a default with units si only)", key);
-    return value == UNSET;
-  };
-  if (absent(input.density, "density")) input.density = 2700.0;
-  if (absent(input.surface_energy, "hamaker or surface"))
-    input.surface_energy = Dust::surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9);
-  if (absent(input.elastic[0], "elastic")) {
-    const double reference[4] = {75.0e9, 0.3, 210.0e9, 0.3};
-    std::copy_n(reference, 4, input.elastic);
-  }
-  if (absent(input.friction, "friction")) input.friction = 0.3;
-}
-
-/* ----------------------------------------------------------------------
-   size of the carriers; false if there are none yet
-------------------------------------------------------------------------- */
-
-bool FixDustDetach::find_carriers()
-{
-  double extremes[2] = {0.0, 0.0};    // of radius and -1/radius: absent carriers change neither
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    const double radius = atom->radius[i];
-    if (!(radius > 0.0))
-      error->one(FLERR, "Fix dust/detach carrier {} has radius {}: it must be above 0", atom->tag[i], radius);
-    extremes[0] = std::max(extremes[0], radius);
-    extremes[1] = std::max(extremes[1], 1.0 / radius);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPI_DOUBLE, MPI_MAX, world);
-  if (extremes[0] == 0.0) return false;
-  const double largest = extremes[0], least = 1.0 / extremes[1];
-  if (largest - least > 1.0e-6 * largest)
-    error->all(FLERR, "Fix dust/detach group {} has carriers of diameter {} to {}: one texture serves one size, use a "
-               "group and a fix for each", group->names[igroup], 2.0 * least, 2.0 * largest);
-  carrier_radius = largest;
-  return true;
-}
-
-/* ---------------------------------------------------------------------- */
-
-Dust::Texture FixDustDetach::make_texture() const
-{
-  if (input.file.empty())
-    return Dust::place_monolayer(carrier_radius, 0.5 * input.diameter, input.coverage, input.bare, input.seed);
-  if (std::fabs(texture.carrier_radius - carrier_radius) > 1.0e-6 * carrier_radius)
-    throw Dust::TextureError(fmt::format("file {} is for carriers of diameter {}, not {}", input.file,
-                                         2.0 * texture.carrier_radius, 2.0 * carrier_radius));
-  return texture;
+  options.complete();
+  if (friction < 0.0) error->all(FLERR, "Fix dust/detach needs keyword friction (it has a default with units si only)");
 }
 
 /* ----------------------------------------------------------------------
@@ -323,16 +117,9 @@ Dust::Texture FixDustDetach::make_texture() const
 
 void FixDustDetach::build()
 {
-  try {
-    texture = make_texture();
-  } catch (Dust::TextureError &e) {
-    error->all(FLERR, "Fix dust/detach texture: {}", e.what());
-  }
-
-  const double *el = input.elastic;
-  const Dust::Material material = {input.density, input.surface_energy,
-                                   Dust::combined_modulus(el[0], el[1], el[2], el[3]), input.friction};
-  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, input.criteria);
+  texture = options.texture(carrier_radius);
+  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction};
+  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, criteria);
 
   // a number that tells this texture from another one in a restart file
   texture_checksum = 0.0;
@@ -349,12 +136,6 @@ void FixDustDetach::build()
     utils::logmesg(lmp, "Fix dust/detach {}: {} grains a carrier, mean mass {:.5g}, pull-off acceleration {:.5g} to {:.5g}\n",
                    id, functions->grains(), functions->mean_mass(), functions->least_hold(),
                    functions->largest_hold());
-  }
-  if (!input.write.empty() && comm->me == 0) {
-    std::ofstream out(input.write);
-    Dust::write_texture(texture, out);
-    out.close();
-    if (!out) error->one(FLERR, "Fix dust/detach cannot write texture file {}", input.write);
   }
 }
 
@@ -388,7 +169,7 @@ void FixDustDetach::init()
 
   if (functions) {
     adopt();
-  } else if (find_carriers()) {
+  } else if ((carrier_radius = options.carrier_radius(igroup)) > 0.0) {
     build();
   } else {
     bool inserts = false;
@@ -413,7 +194,7 @@ void FixDustDetach::setup_post_neighbor()
 
 void FixDustDetach::post_neighbor()
 {
-  if (!functions && find_carriers()) build();
+  if (!functions && (carrier_radius = options.carrier_radius(igroup)) > 0.0) build();
   if (newcomers) adopt();
   drop_lost_collisions();
 }
@@ -461,7 +242,7 @@ void FixDustDetach::post_force(int /*vflag*/)
     else
       rebound(i);
   }
-  if (open_windows && update->ntimestep % input.every == 0) close_window();
+  if (open_windows && update->ntimestep % every == 0) close_window();
 }
 
 /* ---------------------------------------------------------------------- */

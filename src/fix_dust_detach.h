@@ -14,10 +14,10 @@ FixStyle(dust/detach,FixDustDetach);
 #include "fix.h"
 
 #include "core/detachment.h"
+#include "dust_options.h"
 
 #include <array>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -51,28 +51,18 @@ class FixDustDetach : public Fix {
 
  private:
   // what the input asks for
-  struct {
-    std::string file, text;    // texture from a file: its name and what it holds
-    std::string write;         // file to write the texture to
-    double diameter, coverage;
-    int seed;
-    Dust::BareCap bare;
-    double density, surface_energy, elastic[4], friction;
-    Dust::Criteria criteria;
-    int every;
-  } input;
+  DustOptions options;
+  Dust::Criteria criteria;
+  double friction;
+  int every;
   void parse(int, char **);
-  int parse_texture(int, int, char **);
-  void set_defaults();
 
   // texture, once the size of the carriers is known
   double carrier_radius;    // 0 until then
   Dust::Texture texture;
   std::unique_ptr<Dust::DetachmentFunctions> functions;
   double texture_checksum;
-  bool find_carriers();
   void build();
-  Dust::Texture make_texture() const;
 
   // per atom
   enum { NO_CARRIER = -2, FREE_FLIGHT = -1 };    // other states: index of the collision
