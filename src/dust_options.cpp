@@ -97,6 +97,8 @@ int DustOptions::parse(int iarg, int narg, char **arg)
     density = positive(iarg, 1, arg);
     return iarg + 2;
   }
+  if ((key == "hamaker" || key == "surface") && surface_energy != UNSET)
+    error->all(FLERR, "{} {}: the adhesion is given twice", command, key);
   if (key == "hamaker") {
     need(iarg, 2, narg, arg);
     surface_energy = Dust::surface_energy(positive(iarg, 1, arg), positive(iarg, 2, arg));
@@ -150,6 +152,7 @@ int DustOptions::parse_texture(int iarg, int narg, char **arg)
     const std::string key = arg[iarg];
     if (key != "coverage" && key != "seed") break;
     need(iarg, 1, narg, arg);
+    if (key == "coverage" ? coverage != UNSET : seed != 0) error->all(FLERR, "{} {} is given twice", command, key);
     if (key == "coverage") {
       coverage = number(iarg, 1, arg);
       if (!(coverage > 0.0 && std::isfinite(coverage)))
@@ -260,11 +263,16 @@ Dust::Texture DustOptions::texture(double radius) const
   if (std::fabs(made.carrier_radius - radius) > SAME_SIZE * radius)
     error->all(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, file, 2.0 * made.carrier_radius,
                2.0 * radius);
-  if (!write.empty() && comm->me == 0) {
-    std::ofstream out(write);
-    Dust::write_texture(made, out);
-    out.close();
-    if (!out) error->one(FLERR, "{} cannot write texture file {}", command, write);
+  if (!write.empty()) {
+    int written = 1;
+    if (comm->me == 0) {
+      std::ofstream out(write);
+      Dust::write_texture(made, out);
+      out.close();
+      written = out ? 1 : 0;
+    }
+    MPI_Bcast(&written, 1, MPI_INT, 0, world);
+    if (!written) error->all(FLERR, "{} cannot write texture file {}", command, write);
   }
   return made;
 }

@@ -24,9 +24,10 @@ using namespace FixConst;
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
-    attached(nullptr), window_mass(nullptr), newcomers(true), mine{}, sums_step(-1), under_way_step(-1), open_windows(0)
+    attached(nullptr), window_mass(nullptr), newcomers(true), mine{}, open_windows(0)
 {
   parse(narg, arg);
+  check_order();    // of what is there already; the rest before a run
 
   scalar_flag = vector_flag = global_freq = 1;
   size_vector = 13;
@@ -70,6 +71,7 @@ void FixDustDetach::parse(int narg, char **arg)
 {
   friction = strcmp(update->unit_style, "si") == 0 ? 0.3 : -1.0;    // the reference case, as in DustOptions
   every = 1;
+  keep_rows = true;
 
   int iarg = 3;
   while (iarg < narg) {
@@ -80,10 +82,10 @@ void FixDustDetach::parse(int narg, char **arg)
     }
     const std::string key = arg[iarg];
     if (key == "stiffen") error->all(FLERR, "Fix dust/detach stiffen is not available yet");
-    if (key != "friction" && key != "tangential" && key != "criteria" && key != "every" && key != "rotation" && key != "mass" &&
-        key != "emit")
+    if (key != "friction" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" && key != "rotation" &&
+        key != "mass" && key != "emit")
       error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, density, hamaker, surface, elastic, friction, "
-                 "tangential, criteria, every, write, rotation, orientation, mass or emit", key);
+                 "tangential, criteria, every, rows, write, rotation, orientation, mass or emit", key);
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {
@@ -102,6 +104,8 @@ void FixDustDetach::parse(int narg, char **arg)
     } else if (key == "every") {
       every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
       options.check(iarg, 1, arg, every > 0, "at least 1");
+    } else if (key == "rows") {
+      keep_rows = utils::logical(FLERR, arg[iarg + 1], false, lmp);
     } else {
       options.only(iarg, arg, key == "emit" ? "none" : "no");
     }
@@ -153,7 +157,31 @@ void FixDustDetach::init()
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix dust/detach works with run_style verlet, not with {}", update->integrate_style);
 
-  // what post_force() finds in f must be contact forces, all of them and nothing else
+  check_order();
+
+  if (functions) {
+    const double radius = options.carrier_radius(igroup);
+    if (radius > 0.0 && std::fabs(radius - carrier_radius) > 1.0e-6 * carrier_radius)
+      error->all(FLERR, "Fix dust/detach {} has a texture for carriers of diameter {}, but their diameter is now {}: set it before "
+                 "the fix", id, 2.0 * carrier_radius, 2.0 * radius);
+    adopt();
+  } else if ((carrier_radius = options.carrier_radius(igroup)) > 0.0) {
+    build();
+  } else {
+    bool inserts = false;
+    for (const char *style : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
+      inserts = inserts || !modify->get_fix_by_style(style).empty();
+    if (!inserts)
+      error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   what post_force() finds in f must be contact forces, all of them and nothing else
+------------------------------------------------------------------------- */
+
+void FixDustDetach::check_order() const
+{
   bool after = false;
   for (const auto &other : modify->get_fix_list()) {
     if (other == this) after = true;
@@ -166,19 +194,18 @@ void FixDustDetach::init()
       error->all(FLERR, "Fix {} ({}) must stand after fix {} (dust/detach), which would take its force for a contact "
                  "force", other->id, other->style, id);
   }
+}
 
-  if (functions) {
-    adopt();
-  } else if ((carrier_radius = options.carrier_radius(igroup)) > 0.0) {
-    build();
-  } else {
-    bool inserts = false;
-    for (const char *style : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
-      inserts = inserts || !modify->get_fix_by_style(style).empty();
-    if (!inserts)
-      error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
-  }
-  sums_step = under_way_step = -1;
+/* ----------------------------------------------------------------------
+   carriers that are in contact at the very start: nothing has counted this force yet. Others have been counted by the
+   run before, or by the one that wrote the restart file.
+------------------------------------------------------------------------- */
+
+void FixDustDetach::setup(int /*vflag*/)
+{
+  const double *const *f = atom->f;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && state[i] == FREE_FLIGHT && (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0)) collide(i);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -228,7 +255,6 @@ void FixDustDetach::post_force(int /*vflag*/)
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
-  sums_step = under_way_step = -1;
 
   for (int i = 0; i < nlocal; i++, f += 3) {
     // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
@@ -257,7 +283,7 @@ void FixDustDetach::collide(int i)
   const double per_mass = 1.0 / atom->rmass[i];
   const double *f = atom->f[i];
   const double acceleration[3] = {f[0] * per_mass, f[1] * per_mass, f[2] * per_mass};
-  if (collision.step(*functions, acceleration, update->dt, attached[i], detached)) record(i);
+  if (collision.step(*functions, acceleration, update->dt, attached[i], work)) record(i);
   if (collision.packed_size() > room) make_room(collision.packed_size());
 }
 
@@ -266,7 +292,7 @@ void FixDustDetach::collide(int i)
 void FixDustDetach::rebound(int i)
 {
   Dust::Collision &collision = collisions[state[i]];
-  if (collision.end(*functions, atom->v[i], attached[i], detached)) record(i);
+  if (collision.end(*functions, atom->v[i], attached[i], work)) record(i);
   array_atom[i][CONTACT_TIME] = collision.duration();
   array_atom[i][PEAK_ACCELERATION] = collision.peak_acceleration();
   mine.collisions += 1.0;
@@ -313,26 +339,25 @@ void FixDustDetach::drop_lost_collisions()
 void FixDustDetach::record(int i)
 {
   const double half_kick = 0.5 * update->dt / atom->rmass[i];    // v is half a step behind
-  for (const Dust::Detachment &d : detached) {
-    const double weight = functions->weight(d.bit);
-    const double mass = weight * functions->mean_mass();
+  const double *x = atom->x[i], *v = atom->v[i], *f = atom->f[i];
+  const double velocity[3] = {v[0] + half_kick * f[0], v[1] + half_kick * f[1], v[2] + half_kick * f[2]};
+  double lost = 0.0;
+  for (const Dust::Detachment &d : work.detached) {
     mine.modes[d.mode] += 1.0;
-    mine.weight += weight;
-    array_atom[i][ATTACHED] -= 1.0;
-    array_atom[i][MASS] += mass;
-    window_mass[i] += mass;
-
+    lost += functions->weight(d.bit);
+    if (!keep_rows) continue;
     const int number = functions->grain(d.bit);
     const Dust::Grain &grain = texture.grains[number];
-    Row row = {double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0,
-                                    2.0 * grain.radius};
-    for (int k = 0; k < 3; k++) {
-      row[5 + k] = atom->x[i][k] + (carrier_radius + grain.radius) * grain.n[k];
-      row[8 + k] = atom->v[i][k] + half_kick * atom->f[i][k] + d.velocity[k];
-    }
-    events.push_back(row);
+    const double distance = carrier_radius + grain.radius;
+    events.push_back({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
+                      x[0] + distance * grain.n[0], x[1] + distance * grain.n[1], x[2] + distance * grain.n[2],
+                      velocity[0] + d.velocity[0], velocity[1] + d.velocity[1], velocity[2] + d.velocity[2]});
   }
-  detached.clear();
+  mine.weight += lost;
+  array_atom[i][ATTACHED] -= double(work.detached.size());
+  array_atom[i][MASS] += lost * functions->mean_mass();
+  window_mass[i] += lost * functions->mean_mass();
+  work.detached.clear();
   open_windows = 2;    // this one, and the next to show that nothing more came
 }
 
@@ -362,11 +387,9 @@ void FixDustDetach::show_rows()
 
 /* ---------------------------------------------------------------------- */
 
-const FixDustDetach::Sums &FixDustDetach::sum_up()
+FixDustDetach::Sums FixDustDetach::sum_up() const
 {
-  if (sums_step == update->ntimestep) return sums;
-  sums_step = update->ntimestep;
-  Sums local = {mine, 0.0};
+  Sums local = {mine, 0.0}, sums;
   for (int i = 0; i < atom->nlocal; i++)
     if ((atom->mask[i] & groupbit) && state[i] != NO_CARRIER) local.attached += array_atom[i][ATTACHED];
   static_assert(sizeof(Sums) % sizeof(double) == 0, "Sums must hold doubles only");
@@ -374,29 +397,24 @@ const FixDustDetach::Sums &FixDustDetach::sum_up()
   return sums;
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   sum over all ranks of what each collision under way answers
+------------------------------------------------------------------------- */
 
-const double *FixDustDetach::sum_under_way()
+template <typename Question> double FixDustDetach::sum_under_way(Question question) const
 {
-  if (under_way_step == update->ntimestep) return sums_under_way;
-  under_way_step = update->ntimestep;
-  double local[3] = {0.0, 0.0, 0.0};
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || state[i] < 0) continue;
-    const Dust::Collision &collision = collisions[state[i]];
-    local[0] += collision.lost_north(*functions, atom->v[i], attached[i]);    // with the velocity so far
-    local[1] += collision.sliding_grains(*functions, attached[i]);
-    local[2] += collision.rolling_grains(*functions, attached[i]);
-  }
-  MPI_Allreduce(local, sums_under_way, 3, MPI_DOUBLE, MPI_SUM, world);
-  return sums_under_way;
+  double sum = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && state[i] >= 0) sum += question(collisions[state[i]], i);
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
+  return sum;
 }
 
 /* ---------------------------------------------------------------------- */
 
 double FixDustDetach::compute_scalar()
 {
-  const Sums &s = sum_up();
+  const Sums s = sum_up();
   return s.totals.initial > 0.0 ? s.totals.weight / s.totals.initial : 0.0;
 }
 
@@ -404,7 +422,7 @@ double FixDustDetach::compute_scalar()
 
 double FixDustDetach::compute_vector(int n)
 {
-  const Sums &s = sum_up();
+  const Sums s = sum_up();
   const Totals &t = s.totals;
   const double grain_mass = functions ? functions->mean_mass() : 0.0;
   switch (n) {
@@ -413,12 +431,14 @@ double FixDustDetach::compute_vector(int n)
     case 2: return t.modes[Dust::NORMAL];
     case 3: return t.modes[Dust::TANGENTIAL];
     case 4: return std::accumulate(t.modes, t.modes + Dust::NMODES, 0.0) - compute_vector(5);
-    case 5: return t.north + sum_under_way()[0];
+    case 5: return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
+               return c.lost_north(*functions, atom->v[i], attached[i]);    // with the velocity so far
+             });
     case 6: return t.weight * grain_mass;
     case 7: return t.initial * grain_mass;
     case 8: return t.collisions;
-    case 9: return t.sliding + sum_under_way()[1];
-    case 10: return t.rolling + sum_under_way()[2];
+    case 9: return t.sliding + sum_under_way([&](const Dust::Collision &c, int i) { return c.sliding_grains(*functions, attached[i]); });
+    case 10: return t.rolling + sum_under_way([&](const Dust::Collision &c, int i) { return c.rolling_grains(*functions, attached[i]); });
     case 11: return t.modes[Dust::SLIDING];
     default: return t.modes[Dust::ROLLING];
   }
@@ -557,8 +577,14 @@ void FixDustDetach::write_restart(FILE *fp)
   MPI_Reduce(&mine, &total, sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
   const auto *p = reinterpret_cast<const double *>(&total);
   list.insert(list.end(), p, p + sizeof(Totals) / sizeof(double));
+  // LAMMPS counts the bytes of a fix's restart data as int
+  double count = double(events.size() + rows.size());
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_DOUBLE, MPI_SUM, world);
+  const bool fits = count * sizeof(Row) < 2.0e9;
+  if (!fits && comm->me == 0)
+    error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id, count);
   for (const auto *window : {&events, &rows}) {
-    const std::vector<double> all = gather(*window);
+    const std::vector<double> all = fits ? gather(*window) : std::vector<double>();
     list.push_back(double(all.size()));
     list.insert(list.end(), all.begin(), all.end());
   }
@@ -585,7 +611,7 @@ void FixDustDetach::restart(char *buf)
 {
   const auto *p = reinterpret_cast<const double *>(buf);
   const double checksum = *p++;
-  if (checksum != 0.0 && functions && checksum != texture_checksum)
+  if (checksum != 0.0 && functions && std::fabs(checksum - texture_checksum) > 1.0e-9 * (1.0 + std::fabs(checksum)))
     error->all(FLERR, "Fix dust/detach texture is not the one of the restart file");
   mine = Totals{};
   events.clear();

@@ -28,6 +28,7 @@ class FixDustDetach : public Fix {
   ~FixDustDetach() override;
   int setmask() override;
   void init() override;
+  void setup(int) override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_force(int) override;
@@ -55,7 +56,9 @@ class FixDustDetach : public Fix {
   Dust::Criteria criteria;
   double friction;
   int every;
+  bool keep_rows;
   void parse(int, char **);
+  void check_order() const;
 
   // texture, once the size of the carriers is known
   double carrier_radius;    // 0 until then
@@ -87,18 +90,15 @@ class FixDustDetach : public Fix {
     double initial, modes[Dust::NMODES], weight, collisions;
     double north, sliding, rolling;    // of the collisions that are over
   } mine;
-  // sums over all ranks, and the steps they are of; those that ask each collision under way cost more
-  struct Sums {
+  struct Sums {    // over all ranks
     Totals totals;
     double attached;
-  } sums;
-  double sums_under_way[3];    // north, sliding, rolling
-  bigint sums_step, under_way_step;
-  const Sums &sum_up();
-  const double *sum_under_way();
+  };
+  Sums sum_up() const;
+  template <typename Question> double sum_under_way(Question) const;
 
   // detachments
-  std::vector<Dust::Detachment> detached;              // of one carrier in one step
+  Dust::Workspace work;
   static constexpr int NROW = 11;
   using Row = std::array<double, NROW>;
   std::vector<Row> events, rows;    // of this window and of the last complete one

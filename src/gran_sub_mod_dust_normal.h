@@ -34,6 +34,9 @@ namespace Granular_NS {
     double pull_off_force() const { return Fc; }
     double equilibrium_contact_radius() const { return a0; }
 
+    // whether a contact with this history has a neck
+    bool keeps_neck(const double *history) const { return history[neck_owner->history_index + neck_place] != 0.0; }
+
     // another sub-model keeps the neck in its history, at this place of it; see GranSubModRollingDominikTielens
     void keep_neck_in(GranSubMod *, int);
 

@@ -25,24 +25,6 @@ double dot(const double *a, const double *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// p = lambda q + e with e normal to q, q2 = |q|^2; returns lambda and |e|^2
-struct Split {
-  double lambda, aside2;
-};
-Split split(const double *p, const double *q, double q2)
-{
-  const double lambda = dot(p, q) / q2;
-  const double e[3] = {p[0] - lambda * q[0], p[1] - lambda * q[1], p[2] - lambda * q[2]};
-  return {lambda, dot(e, e)};
-}
-
-// true if p lies between the origin and q, to round-off: q is then at least as large in every direction
-bool is_between(const Split &s, double q2)
-{
-  constexpr double ROUND_OFF2 = 1.0e-24;
-  return s.lambda >= 0.0 && s.lambda <= 1.0 && s.aside2 <= ROUND_OFF2 * q2;
-}
-
 // orders grains so that each run of PATCH is a compact patch: halves the set across its longest side, again and again
 void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
 {
@@ -78,16 +60,14 @@ template <typename Visit> void each_bit(uint64_t word, Visit visit)
 /* ---------------------------------------------------------------------- */
 
 DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria) :
-    criteria(criteria), friction(material.friction), grain_of(texture.grains.size())
+    criteria(criteria), friction(material.friction), sites(texture.grains.size())
 {
-  std::iota(grain_of.begin(), grain_of.end(), 0);
-  order_in_patches(texture.grains, grain_of.data(), grain_of.data() + grain_of.size());
-
   const int n = grains();
-  const int padded = (n + PATCH - 1) / PATCH * PATCH;
-  all.assign(padded / PATCH, ~uint64_t(0));
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  order_in_patches(texture.grains, order.data(), order.data() + n);
+  all.assign((n + PATCH - 1) / PATCH, ~uint64_t(0));
   if (n % PATCH) all.back() = (uint64_t(1) << (n % PATCH)) - 1;
-  for (auto *array : {&nx, &ny, &nz, &hold, &lever, &shell, &relative_mass}) array->assign(padded, 0.0);
 
   const auto mass_of = [&](const Grain &g) { return 4.0 / 3.0 * PI * g.radius * g.radius * g.radius * material.density; };
   // equal grains have exactly the mean mass, whatever the round-off of a sum
@@ -100,28 +80,28 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
   least = slow2 = INF;
   largest = 0.0;
   for (int bit = 0; bit < n; bit++) {
-    const Grain &g = texture.grains[grain_of[bit]];
+    const Grain &g = texture.grains[order[bit]];
     const double r12 = effective_radius(texture.carrier_radius, g.radius);
-    nx[bit] = g.n[0];
-    ny[bit] = g.n[1];
-    nz[bit] = g.n[2];
-    hold[bit] = pull_off_force(material.gamma, r12) / mass_of(g);
-    lever[bit] = equilibrium_contact_radius(material.gamma, r12, material.modulus) / g.radius;
-    shell[bit] = texture.carrier_radius + g.radius;
-    relative_mass[bit] = mass_of(g) / mass;
-    least = std::min(least, hold[bit]);
-    largest = std::max(largest, hold[bit]);
-    slow2 = std::min(slow2, hold[bit] * shell[bit]);
+    Site &site = sites[bit];
+    std::copy_n(g.n, 3, site.n);
+    site.hold = pull_off_force(material.gamma, r12) / mass_of(g);
+    site.lever = equilibrium_contact_radius(material.gamma, r12, material.modulus) / g.radius;
+    site.shell = texture.carrier_radius + g.radius;
+    site.weight = mass_of(g) / mass;
+    site.grain = order[bit];
+    least = std::min(least, site.hold);
+    largest = std::max(largest, site.hold);
+    slow2 = std::min(slow2, site.hold * site.shell);
   }
 
   patches.resize(words());
   for (int p = 0; p < words(); p++) {
     Patch &patch = patches[p];
     patch = {{0.0, 0.0, 0.0}, 0.0, INF};
-    const auto grain_at = [&](int k) { return texture.grains[grain_of[p * PATCH + k]].n; };
+    const auto grain_at = [&](int k) { return sites[p * PATCH + k].n; };
     each_bit(all[p], [&](int k) {
       for (int d = 0; d < 3; d++) patch.centre[d] += grain_at(k)[d] / __builtin_popcountll(all[p]);
-      patch.hold = std::min(patch.hold, hold[p * PATCH + k]);
+      patch.hold = std::min(patch.hold, sites[p * PATCH + k].hold);
     });
     each_bit(all[p], [&](int k) {
       const double *n = grain_at(k);
@@ -135,22 +115,13 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
    sliding and rolling of Eq. 2
 ------------------------------------------------------------------------- */
 
-static double tangential(const double *g, double gn, double nx, double ny, double nz)
+DetachmentFunctions::Excess DetachmentFunctions::excess(int bit, const double *g) const
 {
-  const double t[3] = {g[0] - gn * nx, g[1] - gn * ny, g[2] - gn * nz};
-  return std::sqrt(dot(t, t));
-}
-
-bool DetachmentFunctions::slides(int bit, const double *g) const
-{
-  const double gn = normal(bit, g);
-  return tangential(g, gn, nx[bit], ny[bit], nz[bit]) > friction * std::fabs(2.0 * hold[bit] - gn);
-}
-
-bool DetachmentFunctions::rolls(int bit, const double *g) const
-{
-  const double gn = normal(bit, g);
-  return tangential(g, gn, nx[bit], ny[bit], nz[bit]) > lever[bit] * std::fabs(hold[bit] - gn);
+  const Site &site = sites[bit];
+  const double gn = dot(g, site.n), c = site.hold;
+  const double t[3] = {g[0] - gn * site.n[0], g[1] - gn * site.n[1], g[2] - gn * site.n[2]};
+  const double gt = std::sqrt(dot(t, t));
+  return {gt - friction * std::fabs(2.0 * c - gn), gt - site.lever * std::fabs(c - gn)};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -161,9 +132,7 @@ void Collision::begin(const double *velocity)
   time = 0.0;
   nslid = nrolled = 0;
   start.clear();
-  extreme.clear();
-  peak = -1;
-  peak2 = 0.0;
+  history.clear();
   window.along = -1.0;
   window.width = 1.0e-3;
 }
@@ -171,25 +140,25 @@ void Collision::begin(const double *velocity)
 /* ---------------------------------------------------------------------- */
 
 bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, uint64_t *attached,
-                     std::vector<Detachment> &detached)
+                     Workspace &work)
 {
   time += dt;
   const double size2 = dot(a, a);
   Split s = {INF, INF};
-  if (peak >= 0 && size2 <= peak2) {
-    s = split(a, &extreme[3 * peak], peak2);
-    if (is_between(s, peak2)) return false;
+  if (!history.empty() && size2 <= history.peak2()) {
+    s = split(a, history.peak(), history.peak2());
+    if (is_between(s, history.peak2())) return false;
   }
   const double g[3] = {-a[0], -a[1], -a[2]};
-  const size_t before = detached.size();
+  const size_t before = work.detached.size();
   if (df.criteria.ibrahim)
-    check_all(df, g, attached, detached);
+    check_all(df, g, attached, work);
   else if (size2 > df.least * df.least) {
     const double spare = (1.0 - s.lambda) * df.least;
-    if (!(s.lambda >= 0.0 && spare >= 0.0 && s.aside2 <= spare * spare)) lift_off(df, g, attached, detached);
+    if (!(s.lambda >= 0.0 && spare >= 0.0 && s.aside2 <= spare * spare)) lift_off(df, g, attached, work);
   }
-  remember(a, size2);
-  return detached.size() > before;
+  history.add(a, size2);
+  return work.detached.size() > before;
 }
 
 /* ----------------------------------------------------------------------
@@ -197,78 +166,86 @@ bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, 
 ------------------------------------------------------------------------- */
 
 void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_t *attached,
-                         std::vector<Detachment> &detached)
+                         Workspace &work)
 {
   if (start.empty()) start.assign(attached, attached + df.words());
 
+  work.leaving.clear();
   double along = dot(g, window.axis);
   const double e[3] = {g[0] - along * window.axis[0], g[1] - along * window.axis[1], g[2] - along * window.axis[2]};
   if (!(along >= 0.0 && along <= window.along && dot(e, e) <= window.aside * window.aside)) {
     const bool sidewards = window.along >= 0.0 && along <= window.along;
     window.width = std::clamp(window.width * (sidewards ? 2.0 : 0.5), 1.0e-4, 0.1);
-    open_window(df, g, attached);
+    open_window(df, g, attached, work);
     along = dot(g, window.axis);
   }
 
   const int reached = window.step_of(along);
   for (; window.next < window.candidates.size() && window.candidates[window.next].from <= reached; window.next++)
     window.close.push_back(window.candidates[window.next].bit);
-  const auto before = detached.size();
   for (size_t k = 0; k < window.close.size();) {
     const int bit = window.close[k];
-    if (df.normal(bit, g) > df.hold[bit]) {
-      leave(df, {bit, NORMAL, {}}, g, attached, detached);
+    if (df.normal(bit, g) > df.sites[bit].hold) {
+      work.leaving.push_back(bit);
       window.close[k] = window.close.back();
       window.close.pop_back();
     } else
       k++;
   }
   // the order of windows must not show, as a restart opens another one
-  std::sort(detached.begin() + before, detached.end(), [](const Detachment &a, const Detachment &b) { return a.bit < b.bit; });
+  std::sort(work.leaving.begin(), work.leaving.end());
+  for (int bit : work.leaving) leave(df, {bit, NORMAL, {}}, g, attached, work);
 }
 
 /* ----------------------------------------------------------------------
-   window from g on: about 500 grains of 4500 to come, whatever |g|, as the number that holds goes with 1/|g|
+   window from g on: about 500 grains of 4500 to come, whatever |g|, as the number that holds goes with 1/|g|; those that
+   lift off at g itself are leaving
 ------------------------------------------------------------------------- */
 
-void Collision::open_window(const DetachmentFunctions &df, const double *g, const uint64_t *attached)
+void Collision::open_window(const DetachmentFunctions &df, const double *g, const uint64_t *attached, Workspace &work)
 {
   constexpr double ROUND_OFF = 1.0e-9;
   const double size = std::sqrt(dot(g, g));
   for (int d = 0; d < 3; d++) window.axis[d] = g[d] / size;
   window.from = size;
   window.along = size * (1.0 + 0.3 * size / df.least);
-  window.aside = size * window.width;
+  // well below what holds a grain, or grains that feel no lift at all would be candidates
+  window.aside = std::min(size * window.width, 0.3 * df.least);
+  window.steps_per_force = Window::STEPS / (window.along - window.from);
   window.close.clear();
   window.next = 0;
   const double most = window.along * (1.0 + ROUND_OFF), aside = window.aside * (1.0 + ROUND_OFF);
 
-  window.found.clear();
+  work.found.clear();
   int count[Window::STEPS + 1] = {};
   for (int p = 0; p < df.words(); p++) {
     const auto &patch = df.patches[p];
-    if (!attached[p] || std::max(0.0, most * (dot(window.axis, patch.centre) + patch.radius)) + aside <= patch.hold)
+    if (!attached[p] || most * (dot(window.axis, patch.centre) + patch.radius) + aside <= patch.hold)
       continue;
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
-      const double u = df.normal(bit, window.axis), short_of = df.hold[bit] - aside;
-      if (std::max(0.0, most * u) <= short_of) return;
-      const int from = short_of > 0.0 ? window.step_of(short_of / u * (1.0 - ROUND_OFF)) : 0;
-      window.found.push_back({from, bit});
+      const double u = df.normal(bit, window.axis), hold = df.sites[bit].hold;
+      if (most * u <= hold - aside) return;
+      if (df.normal(bit, g) > hold) {
+        work.leaving.push_back(bit);
+        return;
+      }
+      const int from = window.step_of((hold - aside) / u * (1.0 - ROUND_OFF));
+      work.found.push_back({from, bit});
       count[from + 1]++;
     });
   }
   // in the order of steps along the axis
   std::partial_sum(count, count + Window::STEPS + 1, count);
-  window.candidates.resize(window.found.size());
-  for (const auto &candidate : window.found) window.candidates[count[candidate.from]++] = candidate;
+  window.candidates.resize(work.found.size());
+  for (const auto &candidate : work.found) window.candidates[count[candidate.from]++] = candidate;
 }
 
 /* ---------------------------------------------------------------------- */
 
 int Collision::Window::step_of(double force) const
 {
-  return std::clamp(static_cast<int>((force - from) / (along - from) * STEPS), 0, STEPS - 1);
+  return std::clamp(static_cast<int>((force - from) * steps_per_force), 0, STEPS - 1);
 }
 
 /* ----------------------------------------------------------------------
@@ -276,46 +253,54 @@ int Collision::Window::step_of(double force) const
 ------------------------------------------------------------------------- */
 
 void Collision::check_all(const DetachmentFunctions &df, const double *g, uint64_t *attached,
-                          std::vector<Detachment> &detached)
+                          Workspace &work)
 {
   if (start.empty()) start.assign(attached, attached + df.words());
   for (int p = 0; p < df.words(); p++)
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
-      if (df.normal(bit, g) > df.hold[bit])
-        leave(df, {bit, NORMAL, {}}, g, attached, detached);
-      else if (df.slides(bit, g))
-        leave(df, {bit, SLIDING, {}}, g, attached, detached);
-      else if (df.rolls(bit, g))
-        leave(df, {bit, ROLLING, {}}, g, attached, detached);
+      if (df.normal(bit, g) > df.sites[bit].hold)
+        leave(df, {bit, NORMAL, {}}, g, attached, work);
+      else if (df.excess(bit, g).sliding > 0.0)
+        leave(df, {bit, SLIDING, {}}, g, attached, work);
+      else if (df.excess(bit, g).rolling > 0.0)
+        leave(df, {bit, ROLLING, {}}, g, attached, work);
     });
 }
 
 /* ----------------------------------------------------------------------
-   g = inertia force of the current step, which remember() has not seen yet, or null
+   g = inertia force of the current step, which the history does not have yet, or null
 ------------------------------------------------------------------------- */
 
 void Collision::leave(const DetachmentFunctions &df, const Detachment &grain, const double *g, uint64_t *attached,
-                      std::vector<Detachment> &detached)
+                      Workspace &work)
 {
   const int bit = grain.bit;
   attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
-  detached.push_back(grain);
-  nslid += (g && df.slides(bit, g)) || once([&](const double *earlier) { return df.slides(bit, earlier); });
-  nrolled += (g && df.rolls(bit, g)) || once([&](const double *earlier) { return df.rolls(bit, earlier); });
+  work.detached.push_back(grain);
+  const DetachmentFunctions::Excess now = g ? df.excess(bit, g) : DetachmentFunctions::Excess{0.0, 0.0};
+  nslid += now.sliding > 0.0 || has_slid(df, bit);
+  nrolled += now.rolling > 0.0 || has_rolled(df, bit);
 }
 
-/* ----------------------------------------------------------------------
-   true if the inertia force of any step so far passes a test that is convex in it
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-template <typename Test> bool Collision::once(Test test) const
+bool Collision::has_slid(const DetachmentFunctions &df, int bit) const
 {
-  for (size_t i = extreme.size(); i > 0; i -= 3) {
-    const double g[3] = {-extreme[i - 3], -extreme[i - 2], -extreme[i - 1]};
-    if (test(g)) return true;
-  }
-  return false;
+  const auto excess = [&](const double *a) {
+    const double g[3] = {-a[0], -a[1], -a[2]};
+    return df.excess(bit, g).sliding;
+  };
+  return history.any(excess, 1.0 + df.friction);
+}
+
+bool Collision::has_rolled(const DetachmentFunctions &df, int bit) const
+{
+  const auto excess = [&](const double *a) {
+    const double g[3] = {-a[0], -a[1], -a[2]};
+    return df.excess(bit, g).rolling;
+  };
+  return history.any(excess, 1.0 + df.sites[bit].lever);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -324,7 +309,7 @@ int Collision::sliding_grains(const DetachmentFunctions &df, const uint64_t *att
 {
   int n = nslid;
   for (int p = 0; p < df.words(); p++)
-    each_bit(attached[p], [&](int k) { n += once([&](const double *g) { return df.slides(p * PATCH + k, g); }); });
+    each_bit(attached[p], [&](int k) { n += has_slid(df, p * PATCH + k); });
   return n;
 }
 
@@ -332,66 +317,37 @@ int Collision::rolling_grains(const DetachmentFunctions &df, const uint64_t *att
 {
   int n = nrolled;
   for (int p = 0; p < df.words(); p++)
-    each_bit(attached[p], [&](int k) { n += once([&](const double *g) { return df.rolls(p * PATCH + k, g); }); });
+    each_bit(attached[p], [&](int k) { n += has_rolled(df, p * PATCH + k); });
   return n;
-}
-
-/* ----------------------------------------------------------------------
-   keeps accelerations that no other one exceeds in every direction; straight impacts and steady sliding keep one
-------------------------------------------------------------------------- */
-
-void Collision::remember(const double *a, double size2)
-{
-  int n = static_cast<int>(extreme.size() / 3);
-  const auto covers = [](const double *q, double q2, const double *p) { return is_between(split(p, q, q2), q2); };
-  if (n > peak + 1) {    // step() has compared a with the peak
-    const double *last = &extreme[3 * (n - 1)];
-    if (covers(last, dot(last, last), a)) return;
-  }
-  while (n && covers(a, size2, &extreme[3 * (n - 1)])) n--;
-  extreme.resize(3 * (n + 1));
-  std::copy_n(a, 3, &extreme[3 * n]);
-  if (size2 > peak2 || peak >= n) {
-    peak = n;
-    peak2 = size2;
-  }
-}
-
-/* ---------------------------------------------------------------------- */
-
-double Collision::largest_along(const double *n) const
-{
-  double largest = 0.0;
-  for (size_t i = 0; i < extreme.size(); i += 3) largest = std::max(largest, dot(&extreme[i], n));
-  return largest;
 }
 
 /* ---------------------------------------------------------------------- */
 
 double Collision::peak_acceleration() const
 {
-  return std::sqrt(peak2);
+  return std::sqrt(history.peak2());
 }
 
 /* ---------------------------------------------------------------------- */
 
 bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint64_t *attached,
-                    std::vector<Detachment> &detached)
+                    Workspace &work)
 {
   const double dv[3] = {v0[0] - velocity[0], v0[1] - velocity[1], v0[2] - velocity[2]};
   if (df.criteria.tangential == Criteria::OFF || dot(dv, dv) <= df.slow2) return false;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   const double mu = df.criteria.tangential == Criteria::ESTIMATE ? df.friction : 0.0;
-  const size_t before = detached.size();
+  const size_t before = work.detached.size();
+  size_t hint = 0;
   for (int patch = 0; patch < df.words(); patch++) {
     each_bit(attached[patch], [&](int k) {
       const int bit = patch * PATCH + k;
-      const double n[3] = {df.nx[bit], df.ny[bit], df.nz[bit]};
+      const double *n = df.sites[bit].n;
       const double dvn = dot(dv, n);
       if (dvn >= 0.0) return;    // not on the north
-      const double c = df.hold[bit];
-      const double needed = c * df.shell[bit];    // square of the velocity from which the grain is not held: Eq. 3b
+      const double c = df.sites[bit].hold;
+      const double needed = c * df.sites[bit].shell;    // square of the velocity from which the grain is not held: Eq. 3b
       double vt[3];
       for (int d = 0; d < 3; d++) vt[d] = dv[d] - dvn * n[d];    // Eq. 4
       const double vt2 = dot(vt, vt);
@@ -400,14 +356,14 @@ bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint6
       const double speed = std::sqrt(vt2);
       const double brake = 0.5 * mu * speed * time;
       const auto left = [&](double largest) { return vt2 - brake * (2.0 * c + largest); };    // Eq. 5, squared
-      if (left(dot(&extreme[3 * peak], n)) <= needed) return;    // spares most grains that stay the whole history
-      const double vt2_left = left(largest_along(n));
+      if (left(dot(history.peak(), n)) <= needed) return;    // spares most grains that stay the whole history
+      const double vt2_left = left(history.largest_along(n, hint));
       if (vt2_left <= needed) return;
       const double kept = std::sqrt(vt2_left) / speed;
-      leave(df, {bit, TANGENTIAL, {kept * vt[0], kept * vt[1], kept * vt[2]}}, nullptr, attached, detached);
+      leave(df, {bit, TANGENTIAL, {kept * vt[0], kept * vt[1], kept * vt[2]}}, nullptr, attached, work);
     });
   }
-  return detached.size() > before;
+  return work.detached.size() > before;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -419,29 +375,29 @@ int Collision::lost_north(const DetachmentFunctions &df, const double *velocity,
   for (size_t patch = 0; patch < start.size(); patch++)
     each_bit(start[patch] & ~attached[patch], [&](int k) {
       const int bit = static_cast<int>(patch) * PATCH + k;
-      if (df.nx[bit] * dv[0] + df.ny[bit] * dv[1] + df.nz[bit] * dv[2] > 0.0) lost++;
+      if (df.normal(bit, dv) > 0.0) lost++;
     });
   return lost;
 }
 
 /* ----------------------------------------------------------------------
-   v0, time, counts, peak, sizes; then start and extreme. The window is opened anew, which changes no result.
+   v0, time, counts, sizes; then start and history. The window is opened anew, which changes no result.
 ------------------------------------------------------------------------- */
 
-static constexpr int PACKED_SCALARS = 9;
+static constexpr int PACKED_SCALARS = 8;
 
 int Collision::packed_size() const
 {
-  return static_cast<int>(PACKED_SCALARS + start.size() + extreme.size());
+  return static_cast<int>(PACKED_SCALARS + start.size() + history.numbers().size());
 }
 
 void Collision::pack(double *buf) const
 {
-  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), double(peak), double(start.size()),
-                   double(extreme.size())})
+  const std::vector<double> &numbers = history.numbers();
+  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), double(start.size()), double(numbers.size())})
     *buf++ = x;
   std::memcpy(buf, start.data(), start.size() * sizeof(uint64_t));
-  std::copy(extreme.begin(), extreme.end(), buf + start.size());
+  std::copy(numbers.begin(), numbers.end(), buf + start.size());
 }
 
 void Collision::unpack(const double *buf)
@@ -450,10 +406,8 @@ void Collision::unpack(const double *buf)
   time = buf[3];
   nslid = static_cast<int>(buf[4]);
   nrolled = static_cast<int>(buf[5]);
-  peak = static_cast<int>(buf[6]);
-  start.resize(static_cast<size_t>(buf[7]));
+  start.resize(static_cast<size_t>(buf[6]));
   std::memcpy(start.data(), buf + PACKED_SCALARS, start.size() * sizeof(uint64_t));
   const double *p = buf + PACKED_SCALARS + start.size();
-  extreme.assign(p, p + static_cast<size_t>(buf[8]));
-  if (peak >= 0) peak2 = dot(&extreme[3 * peak], &extreme[3 * peak]);
+  history.assign(p, p + static_cast<size_t>(buf[7]));
 }

@@ -5,6 +5,7 @@
 #ifndef DUST_CORE_DETACHMENT_H
 #define DUST_CORE_DETACHMENT_H
 
+#include "acceleration_history.h"
 #include "texture.h"
 
 #include <cstdint>
@@ -46,14 +47,14 @@ class DetachmentFunctions {
  public:
   DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria);
 
-  int grains() const { return static_cast<int>(grain_of.size()); }
+  int grains() const { return static_cast<int>(sites.size()); }
   int words() const { return static_cast<int>(all.size()); }
   const std::vector<uint64_t> &all_attached() const { return all; }
 
   /*! index in the texture of the grain at a bit */
-  int grain(int bit) const { return grain_of[bit]; }
+  int grain(int bit) const { return sites[bit].grain; }
   /*! mass of the grain at a bit as a multiple of the mean grain mass: exactly 1 for equal grains */
-  double weight(int bit) const { return relative_mass[bit]; }
+  double weight(int bit) const { return sites[bit].weight; }
   double mean_mass() const { return mass; }
   /*! least and largest pull-off force per grain mass */
   double least_hold() const { return least; }
@@ -68,22 +69,32 @@ class DetachmentFunctions {
   double least, largest;            // of hold
   double slow2;                     // no tangential lift-off below this square of a velocity
   std::vector<uint64_t> all;        // bits that hold a grain: all but the last ones of the last word
-  std::vector<int> grain_of;        // by bit
-  // by bit, whole patches
-  std::vector<double> nx, ny, nz;
-  std::vector<double> hold;         // c = F_c/m_d
-  std::vector<double> lever;        // a0/R_d
-  std::vector<double> shell;        // |r_pd| = R_p + R_d
-  std::vector<double> relative_mass;
+  // by bit: all that is asked of a grain in one cache line
+  struct alignas(64) Site {
+    double n[3];
+    double hold;      // c = F_c/m_d
+    double lever;     // a0/R_d
+    double shell;     // |r_pd| = R_p + R_d
+    double weight;    // mass in mean grain masses
+    int grain;        // index in the texture
+  };
+  std::vector<Site> sites;
   // by patch: centre, radius (chord) and least hold of its grains
   struct Patch {
     double centre[3], radius, hold;
   };
   std::vector<Patch> patches;
 
-  double normal(int bit, const double *g) const { return g[0] * nx[bit] + g[1] * ny[bit] + g[2] * nz[bit]; }
-  bool slides(int bit, const double *g) const;
-  bool rolls(int bit, const double *g) const;
+  double normal(int bit, const double *g) const
+  {
+    const double *n = sites[bit].n;
+    return g[0] * n[0] + g[1] * n[1] + g[2] * n[2];
+  }
+  // by how much sliding and rolling of Eq. 2 are met at the inertia force g, per grain mass
+  struct Excess {
+    double sliding, rolling;
+  };
+  Excess excess(int bit, const double *g) const;
 };
 
 /*! One grain that has just left */
@@ -91,6 +102,17 @@ struct Detachment {
   int bit;
   Mode mode;
   double velocity[3];    //!< relative to the carrier's centre
+};
+
+/*! What the collisions of a rank share while one of them is looked at */
+struct Workspace {
+  std::vector<Detachment> detached;    //!< grains that have left: to be taken and cleared by the caller
+  struct Candidate {
+    int from;    // step of the window from which the grain could lift off
+    int bit;
+  };
+  std::vector<Candidate> found;
+  std::vector<int> leaving;
 };
 
 /*! Collision of one carrier, from the first step with a contact force to the first without
@@ -101,7 +123,7 @@ struct Detachment {
  *   at S with E to help. They are listed by the force along the axis from which each could, and a step of time
  *   sees only the head of that list. A window is opened where g leaves the last one.
  * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
- *   holds, g_t + k g_n is a convex function of g, so the accelerations on the hull of the history decide. */
+ *   holds, g_t + k g_n is a convex function of g, so the accelerations that the history keeps decide. */
 class Collision {
  public:
   /*! Starts with the velocity before the first step that has a contact force */
@@ -110,14 +132,14 @@ class Collision {
   /*! One time step: Eq. 2 and lift-off normal
    *  \param acceleration  contact force / carrier mass
    *  \param attached      bits of the grains; those that leave are cleared
-   *  \param detached      the grains that leave are appended
+   *  \param work          the grains that leave are appended to its list
    *  \return              true if any left */
   bool step(const DetachmentFunctions &functions, const double *acceleration, double dt, uint64_t *attached,
-            std::vector<Detachment> &detached);
+            Workspace &work);
 
   /*! Lift-off tangential, with the velocity at the first step without contact force: Eqs. 3b and 4-6 */
   bool end(const DetachmentFunctions &functions, const double *velocity, uint64_t *attached,
-           std::vector<Detachment> &detached);
+           Workspace &work);
 
   /*! Grains lost since begin() on the north, n.(velocity - velocity before contact) > 0; before the end with the
    *  velocity so far */
@@ -139,34 +161,28 @@ class Collision {
   double time;
   int nslid, nrolled;               // of the grains that have left
   std::vector<uint64_t> start;      // attached at begin(), kept from when the first grain could leave
-  std::vector<double> extreme;      // x y z of accelerations that no other one exceeds in every direction
-  int peak;                         // which of them is largest
-  double peak2;                     // square of its size
+  AccelerationHistory history;
 
   struct Window {
     double axis[3], from, along, aside;    // from where it was opened to S = along, E = aside
+    double steps_per_force;
     double width;                          // E/|g| for the next window: wider if g left this one sidewards
     static constexpr int STEPS = 256;      // from `from` to `along`
     int step_of(double force) const;
-    struct Candidate {
-      int from;    // step from which the grain could lift off
-      int bit;
-    };
-    std::vector<Candidate> found, candidates;    // as found; by step
-    size_t next;                                 // first that cannot lift off yet
-    std::vector<int> close;                      // could lift off now
+    std::vector<Workspace::Candidate> candidates;    // by step
+    size_t next;                                     // first that cannot lift off yet
+    std::vector<int> close;                          // could lift off now
   } window;
 
-  void open_window(const DetachmentFunctions &functions, const double *g, const uint64_t *attached);
+  void open_window(const DetachmentFunctions &functions, const double *g, const uint64_t *attached, Workspace &work);
   void lift_off(const DetachmentFunctions &functions, const double *g, uint64_t *attached,
-                std::vector<Detachment> &detached);
+                Workspace &work);
   void check_all(const DetachmentFunctions &functions, const double *g, uint64_t *attached,
-                 std::vector<Detachment> &detached);
+                 Workspace &work);
   void leave(const DetachmentFunctions &functions, const Detachment &grain, const double *g, uint64_t *attached,
-             std::vector<Detachment> &detached);
-  void remember(const double *acceleration, double size2);
-  double largest_along(const double *n) const;
-  template <typename Test> bool once(Test test) const;
+             Workspace &work);
+  bool has_slid(const DetachmentFunctions &functions, int bit) const;
+  bool has_rolled(const DetachmentFunctions &functions, int bit) const;
 };
 
 }    // namespace Dust

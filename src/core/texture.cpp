@@ -337,6 +337,7 @@ Texture Dust::read_texture(std::istream &in)
     do {
       lineno++;
       if (!std::getline(in, line)) fail_here("the file ends where " + expected + " should be: it is cut off");
+      if (!line.empty() && line.back() == '\r') line.pop_back();
     } while (lineno > 1 && (line.empty() || line[0] == '#'));
   };
   // the numbers of a line after the word it starts with; each must be finite
@@ -382,6 +383,8 @@ Texture Dust::read_texture(std::istream &in)
   }
   next_line("'end'");
   if (line != "end") fail_here("'end' should be here, after " + std::to_string(texture.grains.size()) + " grains");
+  while (lineno++, std::getline(in, line))
+    if (!line.empty() && line != "\r" && line[0] != '#') fail_here("nothing but comments may follow 'end'");
   check_texture(texture);
   return texture;
 }

@@ -48,7 +48,7 @@ double grains_for_coverage(double coverage, double carrier_radius, double grain_
  * Phys. C 5, 707 (1994), with cells of equal area on a sphere).
  *
  * \param coverage  X0, positive; the bare cap counts as surface
- * \param seed      the same seed gives the same texture on every machine
+ * \param seed      the same seed gives the same texture, to the round-off of the C library's functions
  * \throw TextureError  wrong arguments, or coverage too high to be placed: near 0.547 of the shell of the centres
  *                      outside the cap the placement jams */
 Texture place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare, uint64_t seed);

@@ -95,12 +95,13 @@ Outcome by_collision(const Texture &texture, const DetachmentFunctions &function
 {
   Outcome out;
   std::vector<uint64_t> attached = functions.all_attached();
-  std::vector<Detachment> detached;
+  Workspace work;
+  std::vector<Detachment> &detached = work.detached;
   Collision collision;
   collision.begin(&h.before.x);
   for (size_t k = 0; k <= h.a.size(); k++) {
-    if (k < h.a.size()) collision.step(functions, &h.a[k].x, h.dt, attached.data(), detached);
-    else collision.end(functions, &h.after.x, attached.data(), detached);
+    if (k < h.a.size()) collision.step(functions, &h.a[k].x, h.dt, attached.data(), work);
+    else collision.end(functions, &h.after.x, attached.data(), work);
     for (const Detachment &d : detached) {
       EXPECT_EQ(out.left.count(functions.grain(d.bit)), 0u) << "a grain left twice";
       out.left[functions.grain(d.bit)] = {static_cast<int>(k), d.mode};
@@ -283,12 +284,13 @@ TEST(Detachment, RearGrainsFlyOffWithWhatFrictionLeaves)
   const DetachmentFunctions functions(texture, CALCITE, Criteria());
   const History h = straight_impact(9.0, 0.2733);
   std::vector<uint64_t> attached = functions.all_attached();
-  std::vector<Detachment> detached;
+  Workspace work;
+  std::vector<Detachment> &detached = work.detached;
   Collision collision;
   collision.begin(&h.before.x);
-  for (const Vec &a : h.a) collision.step(functions, &a.x, h.dt, attached.data(), detached);
+  for (const Vec &a : h.a) collision.step(functions, &a.x, h.dt, attached.data(), work);
   detached.clear();
-  ASSERT_TRUE(collision.end(functions, &h.after.x, attached.data(), detached));
+  ASSERT_TRUE(collision.end(functions, &h.after.x, attached.data(), work));
   EXPECT_NEAR(collision.duration(), h.a.size() * h.dt, 1.0e-15);
   const double needed = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);
   for (const Detachment &d : detached) {

@@ -168,7 +168,7 @@ TEST(Texture, SurvivesBeingWrittenAndRead)
 TEST(Texture, CommentsAndCarriageOfNumbers)
 {
   EXPECT_EQ(message("# dust texture 1\n# made by hand\ncarrier_diameter 2\nbare 0 0 0 -1\ngrains 2\n"
-                    "0.57735 0.57735 0.57735 0.1\n# the other\n0 0 -1 1e-1\nend\n"),
+                    "0.57735 0.57735 0.57735 0.1\r\n# the other\n0 0 -1 1e-1\nend\n# made today\n"),
             "no error");
 }
 
@@ -188,6 +188,7 @@ TEST(Texture, ErrorsNameTheLine)
   EXPECT_NE(message(head + "0 0 1 0.1\n0 0 0.5 0.1\nend\n").find("length 0.5"), std::string::npos);
   EXPECT_NE(message(head + "0 0 1 3\n1 0 0 0.1\nend\n").find("grain diameter 3"), std::string::npos);
   EXPECT_NE(message(head + "0 0 1 -0.1\n1 0 0 0.1\nend\n").find("line 5: grain diameter"), std::string::npos);
+  EXPECT_NE(message(head + "0 0 1 0.1\n1 0 0 0.1\nend\n0 1 0 0.1\n").find("line 8"), std::string::npos);
   EXPECT_NE(message("# dust texture 1\ncarrier_diameter 2\nbare 0.3 0 0 -1\ngrains 1.5\n").find("number of grains"),
             std::string::npos);
 }

@@ -250,8 +250,8 @@ TEST(FixDustDetach, OrderOfFixesIsChecked)
     Deck deck;
     deck.box();
     deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
-    deck(fixes);
-    return deck.attempt("run 0");
+    const std::string at_once = deck.attempt(fixes);
+    return at_once.empty() ? deck.attempt("run 0") : at_once;
   };
   const std::string move = "fix move all nve/sphere\n", dust = "fix dust all dust/detach " + REFERENCE_DUST + "\n";
   const std::string wall = "fix floor all wall/gran granular " + contact(0.7) + " zplane 0.0 NULL\n";
@@ -434,6 +434,10 @@ TEST(FixDustDetach, WrongInputIsNamed)
   names("texture file no_such_file", "no_such_file");
   names("density 2700", "texture");
   names(ok + ok, "twice");
+  names("texture monolayer 20e-6 coverage 0.2 coverage 0.3 seed 1", "coverage is given twice");
+  names(ok + "hamaker 1e-19 4e-10 surface 0.01", "surface");
+  names(ok + "rows maybe", "maybe");
+  names(ok + "write /no/such/folder/texture", "/no/such/folder/texture");
   names(ok + "colour red", "colour");
   names(ok + "friction", "friction");
   names(ok + "friction -0.1", "friction");
@@ -490,6 +494,60 @@ TEST(FixDustDetach, BadTextureFilesAreRefused)
   broken.replace(broken.find("carrier_diameter 0.0015"), 23, "carrier_diameter 0.0016");
   EXPECT_NE(error(broken).find("diameter"), std::string::npos);
   std::remove("dust_texture_bad.txt");
+}
+
+TEST(FixDustDetach, NoRowsWhereNoneAreWanted)
+{
+  Deck deck;
+  deck.box();
+  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
+  deck.wall_and_motion();
+  dust(deck, "every 4000 rows no");
+  deck("run 4000 post no");
+  EXPECT_TRUE(deck.events().empty());
+  EXPECT_EQ(deck.vector(), impact());
+  EXPECT_EQ(deck.columns(1)[2], deck.columns(1)[1]);    // the mass of the window is there
+}
+
+TEST(FixDustDetach, StartInContactCountsTheFirstForceOnce)
+{
+  const auto run = [](const std::string &commands) {
+    Deck deck;
+    deck.box();
+    deck.carrier(0.0, 0.0, 0.745e-3, 0.0, 0.0, -3.0);
+    deck.wall_and_motion();
+    dust(deck);
+    deck(commands);
+    return std::make_pair(deck.vector(), deck.columns(1));
+  };
+  const auto whole = run("run 5000 post no");
+  EXPECT_EQ(whole.first[9], 1.0);
+  EXPECT_EQ(run("run 0 post no\nrun 0 post no\nrun 5000 post no"), whole);
+  // the force of step 0 is one of the steps of the contact
+  Deck deck;
+  deck.box();
+  deck.carrier(0.0, 0.0, 0.745e-3, 0.0, 0.0, -3.0);
+  deck.wall_and_motion();
+  deck("run 0 post no");
+  int steps = 0;
+  for (; deck.atom("f", 1)[2] > 0.0; steps++) deck("run 1 pre no post no");
+  EXPECT_NEAR(whole.second[3], steps * 1e-9, 1e-15);
+}
+
+TEST(FixDustDetach, CarriersResizedOrDeletedBetweenRuns)
+{
+  Deck deck;
+  deck.box();
+  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
+  deck.carrier(0.004, 0.0, START, 0.0, 0.0, -8.0);
+  deck.wall_and_motion();
+  dust(deck);
+  deck("run 1000 post no");
+  const double before = deck.global(2);
+  deck("group one id 1\ndelete_atoms group one compress no");
+  EXPECT_EQ(deck.global(2), 0.5 * before);    // at once, not only in the next step
+  deck("set group all diameter 1e-3");
+  EXPECT_NE(deck.attempt("run 10").find("diameter"), std::string::npos);
 }
 
 TEST(FixDustDetach, CarriersOfTwoSizesNeedTwoFixes)

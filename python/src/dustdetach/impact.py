@@ -25,6 +25,14 @@ def option(field: str) -> str:
     return "--" + field.replace("_", "-")
 
 
+#: the deck's carrier and wall of steel: kg/m3, and E* = E/(2 (1 - nu^2)) in Pa
+CARRIER_DENSITY = 7700.0
+CONTACT_MODULUS = 210e9 / (2 * (1 - 0.3**2))
+
+#: a contact of fewer steps is not resolved, one of more does not end within the deck's step limit
+LEAST_STEPS, MOST_STEPS = 50, 100_000
+
+
 @dataclass(frozen=True, kw_only=True)
 class Impact:
     """A carrier with a monolayer of dust hits a rigid wall. SI units, angles as stated.
@@ -89,7 +97,7 @@ class Impact:
 
         _above("speed", self.speed, 0.0, 100.0, "m/s")
         _above("angle", self.angle, 0.0, 90.0, "degrees")
-        _above("restitution", self.restitution, 0.0, 1.0)
+        _from("restitution", self.restitution, 0.01, 1.0)
         _above("carrier_diameter", self.carrier_diameter, 0.0, 1.0, "m")
         _above("grain_diameter", self.grain_diameter, 0.0, self.carrier_diameter, "m, the carrier's", included=False)
         _from("bare", self.bare, 0.0, math.pi, "rad", included=False)
@@ -113,6 +121,22 @@ class Impact:
                 f"--coverage: {self.coverage:g} leaves no grain on the carrier; allowed: above "
                 f"{(self.grain_diameter / self.carrier_diameter) ** 2 / 8:.3g} for these diameters"
             )
+
+        steps = self.hertz_contact_time / self.timestep
+        if not LEAST_STEPS <= steps <= MOST_STEPS:
+            raise InvalidInput(
+                f"--timestep: {self.timestep:g} s makes {steps:.3g} steps of a contact of {self.hertz_contact_time:.3g} s; "
+                f"allowed: {self.hertz_contact_time / MOST_STEPS:.3g} to {self.hertz_contact_time / LEAST_STEPS:.3g} s "
+                "for this speed, angle and carrier diameter"
+            )
+
+    @property
+    def hertz_contact_time(self) -> float:
+        """Contact time of the undamped straight impact, s: 2.9432 overlap/speed, overlap = (15 m v^2/(16 E* sqrt(R)))^0.4."""
+        radius = self.carrier_diameter / 2
+        speed = self.speed * math.sin(math.radians(self.angle))
+        mass = 4 / 3 * math.pi * radius**3 * CARRIER_DENSITY
+        return 2.9432 * (15 * mass * speed**2 / (16 * CONTACT_MODULUS * math.sqrt(radius))) ** 0.4 / speed
 
     @property
     def grains(self) -> int:

@@ -1,0 +1,155 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "compute_dust_carrier.h"
+
+#include "gran_sub_mod_dust_normal.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_neigh_history.h"
+#include "force.h"
+#include "granular_model.h"
+#include "group.h"
+#include "memory.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "pair_granular.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace Granular_NS;
+
+/* ---------------------------------------------------------------------- */
+
+ComputeDustCarrier::ComputeDustCarrier(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), nmax(0), pair(nullptr), history(nullptr)
+{
+  if (narg != 4) error->all(FLERR, "Compute dust/carrier wants one value, the group of the carriers, not {}", narg - 3);
+  const int carriers = group->find(arg[3]);
+  if (carriers < 0) error->all(FLERR, "Compute dust/carrier group {} does not exist", arg[3]);
+  carrier_bit = group->bitmask[carriers];
+
+  peratom_flag = 1;
+  size_peratom_cols = 0;
+  scalar_flag = 1;
+  extscalar = 0;
+  comm_forward = comm_reverse = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeDustCarrier::~ComputeDustCarrier()
+{
+  memory->destroy(vector_atom);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeDustCarrier::init()
+{
+  pair = dynamic_cast<PairGranular *>(force->pair);
+  if (!pair) error->all(FLERR, "Compute dust/carrier needs pair_style granular, not {}", force->pair_style ? force->pair_style : "none");
+  history = nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   necks tie: each atom takes the highest carrier ID that it or a neighbour of it has, until nothing changes. Chains are
+   short, so few rounds do; all ranks make the same number.
+------------------------------------------------------------------------- */
+
+void ComputeDustCarrier::compute_peratom()
+{
+  invoked_peratom = update->ntimestep;
+  if (!history)    // made at the pair style's first init, after ours
+    for (auto *fix : modify->get_fix_by_style("^NEIGH_HISTORY"))
+      if (auto *candidate = dynamic_cast<FixNeighHistory *>(fix))
+        if (candidate->pair == pair) history = candidate;
+  if (!history || !pair->list) error->all(FLERR, "Compute dust/carrier finds no contact history: it needs a run");
+
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(vector_atom);
+    memory->create(vector_atom, nmax, "dust/carrier:vector_atom");
+  }
+  const int *mask = atom->mask, *type = atom->type;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) vector_atom[i] = (mask[i] & carrier_bit) ? double(atom->tag[i]) : 0.0;
+
+  const NeighList *list = pair->list;
+  const int size = pair->get_size_history();
+  int changed = 1;
+  while (changed) {
+    changed = 0;
+    for (int ii = 0; ii < list->inum; ii++) {
+      const int i = list->ilist[ii];
+      for (int jj = 0; jj < list->numneigh[i]; jj++) {
+        if (!history->firstflag[i][jj]) continue;
+        const int j = list->firstneigh[i][jj] & NEIGHMASK;
+        const GranularModel *model = pair->models_list[pair->types_indices[type[i]][type[j]]];
+        const auto *normal = dynamic_cast<const GranSubModNormalJKRVdW *>(model->normal_model);
+        if (!normal || !normal->keeps_neck(history->firstvalue[i] + size * jj)) continue;
+        double &a = vector_atom[i], &b = vector_atom[j];
+        // a carrier keeps its own ID
+        if (b > a && !(mask[i] & carrier_bit)) { a = b; changed = 1; }
+        if (a > b && !(mask[j] & carrier_bit)) { b = a; changed = 1; }
+      }
+    }
+    // what a ghost has learnt goes to its owner, what the owner knows to all ghosts
+    comm->reverse_comm(this);
+    comm->forward_comm(this);
+    MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
+  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(mask[i] & groupbit)) vector_atom[i] = 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   grains of the group that are tied to a carrier
+------------------------------------------------------------------------- */
+
+double ComputeDustCarrier::compute_scalar()
+{
+  invoked_scalar = update->ntimestep;
+  if (invoked_peratom != update->ntimestep) compute_peratom();
+  bigint tied = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && !(atom->mask[i] & carrier_bit) && vector_atom[i] > 0.0) tied++;
+  MPI_Allreduce(MPI_IN_PLACE, &tied, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  scalar = double(tied);
+  return scalar;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int ComputeDustCarrier::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = vector_atom[list[k]];
+  return n;
+}
+
+void ComputeDustCarrier::unpack_forward_comm(int n, int first, double *buf)
+{
+  std::copy_n(buf, n, vector_atom + first);
+}
+
+int ComputeDustCarrier::pack_reverse_comm(int n, int first, double *buf)
+{
+  std::copy_n(vector_atom + first, n, buf);
+  return n;
+}
+
+void ComputeDustCarrier::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  for (int k = 0; k < n; k++) vector_atom[list[k]] = std::max(vector_atom[list[k]], buf[k]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeDustCarrier::memory_usage()
+{
+  return double(nmax) * sizeof(double);
+}

@@ -1,0 +1,40 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifdef COMMAND_CLASS
+// clang-format off
+CommandStyle(create_dust,CreateDust);
+// clang-format on
+#else
+
+#ifndef LMP_CREATE_DUST_H
+#define LMP_CREATE_DUST_H
+
+#include "command.h"
+
+#include "core/texture.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// puts real grains on carriers, at the overlap at which the adhesive contact carries no load
+
+class CreateDust : public Command {
+ public:
+  CreateDust(class LAMMPS *lmp) : Command(lmp) {}
+  void command(int, char **) override;
+
+ private:
+  struct Carrier {
+    double tag, x[3], v[3], omega[3];
+  };
+  std::vector<Carrier> all_carriers(int) const;
+  bool is_mine(const double *) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

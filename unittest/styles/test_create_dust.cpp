@@ -1,0 +1,164 @@
+// create_dust and compute dust/carrier: real grains at rest on their carriers, and which carrier holds them.
+
+#include "deck.h"
+
+#include "hamaker.h"
+#include "jkr.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+namespace {
+
+const double HAMAKER = std::sqrt(10.1e-20 * 21.2e-20), GAMMA = Dust::surface_energy(HAMAKER, 0.4e-9);
+const double R12 = Dust::effective_radius(0.75e-3, 10e-6), MODULUS = Dust::combined_modulus(75e9, 0.3, 210e9, 0.3);
+const double A0 = Dust::equilibrium_contact_radius(GAMMA, R12, MODULUS);
+
+// pair_coeff of grains (type 2) on carriers (type 1) and on each other, critically damped
+std::string adhesion()
+{
+  char text[1024];
+  const double young = 2.0 * 0.91 * MODULUS, mass = 4.0 / 3.0 * M_PI * 1e-15 * 2700.0;
+  const double eta = 2.0 * std::sqrt(1.2 * MODULUS * A0 / mass) / A0;
+  const char *rest = "0.3 %.17g 0.4e-9 tangential mindlin NULL 0.0 0.3 damping viscoelastic rolling dominik/tielens 0.15\n";
+  std::string line = "pair_coeff 1 1 " + contact(0.7) + "\n";
+  std::snprintf(text, sizeof(text), (std::string("pair_coeff 1 2 jkr/vdw %.17g %.17g ") + rest).c_str(), young, eta, HAMAKER);
+  line += text;
+  std::snprintf(text, sizeof(text), (std::string("pair_coeff 2 2 jkr/vdw 75e9 %.17g ") + rest).c_str(), eta, 10.1e-20);
+  return line + text;
+}
+
+// carriers with few grains each, so that it is quick
+void dusty_carriers(Deck &deck, int n, const char *more = "")
+{
+  deck("units si\natom_style sphere\natom_modify map array\nboundary p p f\nnewton off\n"
+       "region box block -0.004 0.004 -0.002 0.002 -0.002 0.004\ncreate_box 2 box\n"
+       "neighbor 15e-6 multi\ncomm_modify mode multi vel yes\nneigh_modify one 10000 page 200000\ntimestep 1e-9");
+  for (int k = 0; k < n; k++) deck.carrier(-0.0025 + 0.0025 * k, 0.0, 0.001, 0.1, 0.0, -0.2 * k);
+  deck("group carriers type 1\nset group carriers omega 10 20 30\n"
+       "create_dust carriers type 2 texture monolayer 20e-6 coverage 0.01 seed 3 " + std::string(more) +
+       "\ngroup grains type 2\npair_style granular\n" + adhesion() + "fix move all nve/sphere\ncompute tied grains dust/carrier carriers\n"
+       "thermo_style custom step c_tied\nrun 0 post no");
+}
+
+double tied(Deck &deck)
+{
+  return *static_cast<double *>(lammps_extract_compute(deck.lmp, "tied", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR));
+}
+
+}    // namespace
+
+TEST(CreateDust, GrainsSitAtTheEquilibriumOverlapAndMoveWithTheirCarrier)
+{
+  Deck deck;
+  dusty_carriers(deck, 2, "write dust_created.txt");
+  ASSERT_EQ(lammps_get_natoms(deck.lmp), 2 + 2 * 225.0);
+  std::ifstream file("dust_created.txt");
+  std::string line;
+  std::vector<std::array<double, 3>> n;
+  while (std::getline(file, line)) {
+    std::array<double, 3> v;
+    if (std::sscanf(line.c_str(), "%lf %lf %lf 2.0", &v[0], &v[1], &v[2]) == 3) n.push_back(v);
+  }
+  ASSERT_EQ(n.size(), 225u);
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < 225; i++) {
+      const int grain = 3 + 225 * k + i;
+      const double *xp = deck.atom("x", k + 1), *vp = deck.atom("v", k + 1), *w = deck.atom("omega", k + 1);
+      const double *x = deck.atom("x", grain), *v = deck.atom("v", grain);
+      const double distance = 0.76e-3 - Dust::equilibrium_overlap(A0, R12);
+      double r[3];
+      for (int d = 0; d < 3; d++) {
+        r[d] = x[d] - xp[d];
+        ASSERT_NEAR(r[d], distance * n[i][d], 1e-17);
+      }
+      ASSERT_NEAR(v[0], vp[0] + w[1] * r[2] - w[2] * r[1], 1e-14);
+      ASSERT_NEAR(v[1], vp[1] + w[2] * r[0] - w[0] * r[2], 1e-14);
+      ASSERT_NEAR(v[2], vp[2] + w[0] * r[1] - w[1] * r[0], 1e-14);
+    }
+  std::remove("dust_created.txt");
+}
+
+TEST(CreateDust, GrainsStayOnAFlyingCarrier)
+{
+  Deck deck;
+  dusty_carriers(deck, 1);
+  deck("set group all omega 0 0 0\nvelocity all set 3 0 -2\nrun 10000 post no");
+  EXPECT_EQ(tied(deck), 225.0);
+  EXPECT_NEAR(deck.atom("v", 1)[0], 3.0, 3e-9);
+  EXPECT_NEAR(deck.atom("v", 1)[2], -2.0, 2e-9);
+}
+
+TEST(CreateDust, ComputeKnowsWhichCarrierHoldsAGrain)
+{
+  Deck deck;
+  dusty_carriers(deck, 3);
+  deck("run 1 post no");
+  const auto *label = static_cast<double *>(lammps_extract_compute(deck.lmp, "tied", LMP_STYLE_ATOM, LMP_TYPE_VECTOR));
+  const int *tag = static_cast<int *>(lammps_extract_atom(deck.lmp, "id"));
+  ASSERT_NE(label, nullptr);
+  for (int i = 0; i < static_cast<int>(lammps_get_natoms(deck.lmp)); i++) {
+    ASSERT_EQ(label[i], tag[i] <= 3 ? 0.0 : 1.0 + (tag[i] - 4) / 225) << tag[i];    // carriers are not in the group of the grains
+  }
+  EXPECT_EQ(tied(deck), 675.0);
+  // a grain pulled off is tied to nothing, one that holds on to another grain is tied to that one's carrier
+  const double *x = deck.atom("x", 10), *xp = deck.atom("x", 1);
+  char move[256];
+  const double reach = (0.76e-3 + 20e-6 - Dust::equilibrium_overlap(A0, R12)) / 0.76e-3;
+  std::snprintf(move, sizeof(move), "set atom 11 x %.17g y %.17g z %.17g\nset atom 12 z 0.0035\nset atom 11 omega 0 0 0",
+                xp[0] + reach * (x[0] - xp[0]), xp[1] + reach * (x[1] - xp[1]), xp[2] + reach * (x[2] - xp[2]));
+  deck(std::string(move) + "\nvelocity all set 0 0 0\nset group all omega 0 0 0\nrun 5 post no");
+  EXPECT_EQ(tied(deck), 674.0);
+}
+
+TEST(CreateDust, SortingAtomsChangesNothing)
+{
+  // sorting swaps i and j of contacts: necks, sliding and rolling displacements must survive, also beside carriers' own
+  // contacts of another model; sums of forces then run in another order, which is round-off
+  const auto run = [](const char *sorting, double *omega) {
+    Deck deck;
+    dusty_carriers(deck, 3);
+    deck(std::string(sorting) + "\nvelocity all set 0 0 0\nset group carriers omega 0 0 0\nset group grains omega 2e3 -1e3 5e2\n"
+         "neigh_modify every 200 delay 0 check no\nrun 1000 post no");
+    for (int grain = 4; grain < 4 + 675; grain++)
+      for (int d = 0; d < 3; d++) *omega++ = deck.atom("omega", grain)[d];
+    return tied(deck);
+  };
+  std::vector<double> sorted(3 * 675), unsorted(3 * 675);
+  EXPECT_EQ(run("atom_modify sort 200 1e-4", sorted.data()), run("atom_modify sort 0 0", unsorted.data()));
+  double largest = 0.0;
+  for (double w : unsorted) largest = std::max(largest, std::fabs(w));
+  for (size_t k = 0; k < sorted.size(); k++) ASSERT_NEAR(sorted[k], unsorted[k], 1e-6 * largest);
+}
+
+TEST(CreateDust, WrongInputIsNamed)
+{
+  const auto error = [](const std::string &words) {
+    Deck deck;
+    deck.box();
+    deck.carrier(0.0, 0.0, 0.001, 0.0, 0.0, 0.0);
+    deck("group none type 2\ngroup carriers type 1");
+    const std::string message = deck.attempt("create_dust " + words);
+    EXPECT_TRUE(message.empty() || lammps_get_natoms(deck.lmp) == 1.0 || words.find("bare") != std::string::npos);
+    return message;
+  };
+  const std::string ok = "texture monolayer 20e-6 coverage 0.01 seed 1";
+  EXPECT_EQ(error("carriers type 2 " + ok), "");
+  EXPECT_NE(error("all").find("create_dust"), std::string::npos);
+  EXPECT_NE(error("nobody type 2 " + ok).find("nobody"), std::string::npos);
+  EXPECT_NE(error("none type 2 " + ok).find("no carriers"), std::string::npos);
+  EXPECT_NE(error("carriers kind 2 " + ok).find("kind"), std::string::npos);
+  EXPECT_NE(error("carriers type 3 " + ok).find("type 3"), std::string::npos);
+  EXPECT_NE(error("carriers type 2 density 2700").find("texture"), std::string::npos);
+  EXPECT_NE(error("carriers type 2 " + ok + " friction 0.3").find("friction"), std::string::npos);
+  EXPECT_NE(error("carriers type 2 texture monolayer 20e-6 coverage 0.7 seed 1").find("coverage 0.7"), std::string::npos);
+}
+
+int main(int argc, char **argv)
+{
+  testing::InitGoogleTest(&argc, argv);
+  const int result = RUN_ALL_TESTS();
+  lammps_mpi_finalize();
+  return result;
+}
