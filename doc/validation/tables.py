@@ -311,7 +311,7 @@ def table_traps() -> None:
                     text=True,
                     check=True,
                 ).stdout
-                e = re.search(r"^e (\S+)", out, re.M).group(1)
+                e = re.search(r"^e (\S+)", out, re.MULTILINE).group(1)
                 south, north = re.search(r"south (\S+), north (\S+)", out).groups()
                 row += [e, south, north] if angle == 90 else [f"{float(south) + float(north):.4f}"]
         rows.append(row)

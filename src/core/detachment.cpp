@@ -173,9 +173,14 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
   work.leaving.clear();
   double along = dot(g, window.axis);
   const double e[3] = {g[0] - along * window.axis[0], g[1] - along * window.axis[1], g[2] - along * window.axis[2]};
-  if (!(along >= 0.0 && along <= window.along && dot(e, e) <= window.aside * window.aside)) {
-    const bool sidewards = window.along >= 0.0 && along <= window.along;
-    window.width = std::clamp(window.width * (sidewards ? 2.0 : 0.5), 1.0e-4, 0.1);
+  const double aside2 = dot(e, e);
+  if (along >= 0.0 && along <= window.along && aside2 <= window.aside * window.aside) {
+    window.strayed2 = std::max(window.strayed2, aside2);
+  } else {
+    // twice as wide as needed so far
+    if (window.along >= 0.0 && along <= window.along) window.width *= 2.0;
+    else if (window.along >= 0.0) window.width = 2.0 * std::sqrt(window.strayed2) / window.from;
+    window.width = std::clamp(window.width, 1.0e-4, 0.1);
     open_window(df, g, attached, work);
     along = dot(g, window.axis);
   }
@@ -193,7 +198,7 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
       k++;
   }
   // the order of windows must not show, as a restart opens another one
-  std::sort(work.leaving.begin(), work.leaving.end());
+  if (!std::is_sorted(work.leaving.begin(), work.leaving.end())) std::sort(work.leaving.begin(), work.leaving.end());
   for (int bit : work.leaving) leave(df, {bit, NORMAL, {}}, g, attached, work);
 }
 
@@ -211,6 +216,7 @@ void Collision::open_window(const DetachmentFunctions &df, const double *g, cons
   window.along = size * (1.0 + 0.3 * size / df.least);
   // well below what holds a grain, or grains that feel no lift at all would be candidates
   window.aside = std::min(size * window.width, 0.3 * df.least);
+  window.strayed2 = 0.0;
   window.steps_per_force = Window::STEPS / (window.along - window.from);
   window.close.clear();
   window.next = 0;

@@ -166,7 +166,8 @@ class Collision {
   struct Window {
     double axis[3], from, along, aside;    // from where it was opened to S = along, E = aside
     double steps_per_force;
-    double width;                          // E/|g| for the next window: wider if g left this one sidewards
+    double strayed2;                       // square of the farthest that g has been from the axis
+    double width;                          // E/|g| for the next window: as g strays
     static constexpr int STEPS = 256;      // from `from` to `along`
     int step_of(double force) const;
     std::vector<Workspace::Candidate> candidates;    // by step

@@ -125,14 +125,17 @@ class Impact:
         steps = self.hertz_contact_time / self.timestep
         if not LEAST_STEPS <= steps <= MOST_STEPS:
             raise InvalidInput(
-                f"--timestep: {self.timestep:g} s makes {steps:.3g} steps of a contact of {self.hertz_contact_time:.3g} s; "
-                f"allowed: {self.hertz_contact_time / MOST_STEPS:.3g} to {self.hertz_contact_time / LEAST_STEPS:.3g} s "
-                "for this speed, angle and carrier diameter"
+                f"--timestep: {self.timestep:g} s makes {steps:.3g} steps of a contact of "
+                f"{self.hertz_contact_time:.3g} s; allowed: {self.hertz_contact_time / MOST_STEPS:.3g} to "
+                f"{self.hertz_contact_time / LEAST_STEPS:.3g} s for this speed, angle and carrier diameter"
             )
 
     @property
     def hertz_contact_time(self) -> float:
-        """Contact time of the undamped straight impact, s: 2.9432 overlap/speed, overlap = (15 m v^2/(16 E* sqrt(R)))^0.4."""
+        """Contact time of the undamped impact (Hertz), s.
+
+        2.9432 overlap/speed with overlap = (15 m v^2/(16 E* sqrt(R)))^0.4 and the speed normal to the wall.
+        """
         radius = self.carrier_diameter / 2
         speed = self.speed * math.sin(math.radians(self.angle))
         mass = 4 / 3 * math.pi * radius**3 * CARRIER_DENSITY
