@@ -24,7 +24,6 @@
 using namespace LAMMPS_NS;
 
 static constexpr double UNSET = -1.0;
-static constexpr double SAME_SIZE = 1.0e-6;    // relative difference up to which carriers share a texture
 
 /* ---------------------------------------------------------------------- */
 
@@ -230,6 +229,13 @@ double DustOptions::modulus() const
 
 /* ---------------------------------------------------------------------- */
 
+bool DustOptions::same_size(double radius, double other)
+{
+  return std::fabs(radius - other) <= 1.0e-6 * other;
+}
+
+/* ---------------------------------------------------------------------- */
+
 double DustOptions::carrier_radius(int igroup) const
 {
   double extremes[2] = {0.0, 0.0};    // of radius and 1/radius: absent carriers change neither
@@ -243,7 +249,7 @@ double DustOptions::carrier_radius(int igroup) const
   MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPI_DOUBLE, MPI_MAX, world);
   if (extremes[0] == 0.0) return 0.0;
   const double largest = extremes[0], least = 1.0 / extremes[1];
-  if (largest - least > SAME_SIZE * largest)
+  if (!same_size(least, largest))
     error->all(FLERR, "{} group {} has carriers of diameter {} to {}: one texture serves one size, use a group and a command "
                "for each", command, group->names[igroup], 2.0 * least, 2.0 * largest);
   return largest;
@@ -260,7 +266,7 @@ Dust::Texture DustOptions::texture(double radius) const
   } catch (Dust::TextureError &e) {
     error->all(FLERR, "{} texture: {}", command, e.what());
   }
-  if (std::fabs(made.carrier_radius - radius) > SAME_SIZE * radius)
+  if (!same_size(made.carrier_radius, radius))
     error->all(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, file, 2.0 * made.carrier_radius,
                2.0 * radius);
   if (!write.empty()) {

@@ -33,6 +33,8 @@ class DustOptions : protected Pointers {
 
   // diameter of the carriers of a group on all ranks, halved; 0 if there are none, an error if they differ
   double carrier_radius(int igroup) const;
+  // whether carriers of two radii can share a texture
+  static bool same_size(double, double);
   // the texture for carriers of a radius; writes it to a file if asked for
   Dust::Texture texture(double carrier_radius) const;
 

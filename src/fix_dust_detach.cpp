@@ -161,7 +161,7 @@ void FixDustDetach::init()
 
   if (functions) {
     const double radius = options.carrier_radius(igroup);
-    if (radius > 0.0 && std::fabs(radius - carrier_radius) > 1.0e-6 * carrier_radius)
+    if (radius > 0.0 && !DustOptions::same_size(radius, carrier_radius))
       error->all(FLERR, "Fix dust/detach {} has a texture for carriers of diameter {}, but their diameter is now {}: set it before "
                  "the fix", id, 2.0 * carrier_radius, 2.0 * radius);
     adopt();
@@ -236,7 +236,7 @@ void FixDustDetach::adopt()
   newcomers = false;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || state[i] != NO_CARRIER) continue;
-    if (std::fabs(atom->radius[i] - carrier_radius) > 1.0e-6 * carrier_radius)
+    if (!DustOptions::same_size(atom->radius[i], carrier_radius))
       error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
                  atom->tag[i], 2.0 * atom->radius[i], 2.0 * carrier_radius);
     state[i] = FREE_FLIGHT;

@@ -7,7 +7,6 @@
 #include "core/hamaker.h"
 #include "core/jkr.h"
 
-#include "comm.h"
 #include "error.h"
 #include "granular_model.h"
 

@@ -4,16 +4,11 @@
 
 #include "acceleration_history.h"
 
+#include "geometry.h"
+
 #include <algorithm>
 
 using namespace Dust;
-
-static double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* ---------------------------------------------------------------------- */
 
 Split Dust::split(const double *p, const double *q, double q2)
 {

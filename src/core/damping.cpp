@@ -4,11 +4,11 @@
 
 #include "damping.h"
 
+#include "geometry.h"
+
 #include <cmath>
 
 namespace {
-
-constexpr double PI = 3.14159265358979323846;
 
 // x such that decay(x) = target, for a decay that grows with x between lo and hi
 template <typename Decay> double invert(Decay decay, double target, double lo, double hi)
@@ -26,7 +26,7 @@ double Dust::damping_ratio(double e)
 {
   const double target = -std::log(e);
   if (target < 2.0)
-    return std::sin(invert([](double t) { return std::tan(t) * (PI - 2.0 * t); }, target, 0.0, 0.5 * PI));
+    return std::sin(invert([](double t) { return std::tan(t) * (Dust::PI - 2.0 * t); }, target, 0.0, 0.5 * Dust::PI));
   if (target == 2.0) return 1.0;
   return std::cosh(invert([](double h) { return 2.0 * h / std::tanh(h); }, target, 0.0, target));
 }

@@ -4,6 +4,7 @@
 
 #include "detachment.h"
 
+#include "geometry.h"
 #include "jkr.h"
 
 #include <algorithm>
@@ -18,12 +19,6 @@ namespace {
 
 constexpr int PATCH = 64;
 constexpr double INF = std::numeric_limits<double>::infinity();
-constexpr double PI = 3.14159265358979323846;
-
-double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // orders grains so that each run of PATCH is a compact patch: halves the set across its longest side, again and again
 void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)

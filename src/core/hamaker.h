@@ -5,6 +5,8 @@
 #ifndef DUST_CORE_HAMAKER_H
 #define DUST_CORE_HAMAKER_H
 
+#include "geometry.h"
+
 namespace Dust {
 
 /*! Surface energy at which the JKR pull-off force equals the van der Waals force at the least distance z0:
@@ -15,7 +17,6 @@ namespace Dust {
  * \return         gamma, energy/area; the work of adhesion is 2 gamma */
 inline double surface_energy(double hamaker, double z0)
 {
-  constexpr double PI = 3.14159265358979323846;
   return hamaker / (18.0 * PI * z0 * z0);
 }
 

@@ -5,6 +5,8 @@
 #ifndef DUST_CORE_JKR_H
 #define DUST_CORE_JKR_H
 
+#include "geometry.h"
+
 #include <cmath>
 
 /* Constants of the adhesive contact of Johnson, Kendall and Roberts, Proc. R. Soc. Lond. A 324, 301 (1971), with
@@ -27,14 +29,12 @@ inline double combined_modulus(double e1, double nu1, double e2, double nu2)
 /*! Pull-off force F_c = 3 pi gamma R_12 */
 inline double pull_off_force(double gamma, double r12)
 {
-  constexpr double PI = 3.14159265358979323846;
   return 3.0 * PI * gamma * r12;
 }
 
 /*! Contact radius without load, a0 = (9 pi gamma R_12^2/E*)^(1/3) */
 inline double equilibrium_contact_radius(double gamma, double r12, double modulus)
 {
-  constexpr double PI = 3.14159265358979323846;
   return std::cbrt(9.0 * PI * gamma * r12 * r12 / modulus);
 }
 

@@ -5,6 +5,8 @@
 #ifndef DUST_CORE_ROLLING_H
 #define DUST_CORE_ROLLING_H
 
+#include "geometry.h"
+
 #include <cmath>
 
 namespace Dust {
@@ -19,7 +21,6 @@ namespace Dust {
  * \param limit     xi_crit = R_12 theta_crit */
 inline void roll_on(double *xi, const double *n, const double *velocity, double dt, double limit)
 {
-  const auto dot = [](const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
   const double along = dot(xi, n), size2 = dot(xi, xi), left = size2 - along * along;
   const double turned = left > 0.0 ? std::sqrt(size2 / left) : 0.0;
   for (int d = 0; d < 3; d++) xi[d] = turned * (xi[d] - along * n[d]) + dt * velocity[d];

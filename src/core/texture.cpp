@@ -4,6 +4,8 @@
 
 #include "texture.h"
 
+#include "geometry.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,13 +20,7 @@ using namespace Dust;
 
 namespace {
 
-constexpr double PI = 3.14159265358979323846;
 constexpr double MIN_GAP = 1.0e-3;    // between two grains, of their diameter
-
-double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // squared chord between two unit vectors: exact where the dot product would round small distances away
 double chord2(const double *a, const double *b)
