@@ -20,6 +20,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace Granular_NS;
@@ -36,9 +37,11 @@ ComputeDustCarrier::ComputeDustCarrier(LAMMPS *lmp, int narg, char **arg) :
 
   peratom_flag = 1;
   size_peratom_cols = 0;
-  scalar_flag = 1;
-  extscalar = 0;
+  scalar_flag = vector_flag = 1;
+  extscalar = extvector = 0;
+  size_vector = 3;
   comm_forward = comm_reverse = 1;
+  vector = new double[size_vector];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -46,6 +49,7 @@ ComputeDustCarrier::ComputeDustCarrier(LAMMPS *lmp, int narg, char **arg) :
 ComputeDustCarrier::~ComputeDustCarrier()
 {
   memory->destroy(vector_atom);
+  delete[] vector;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -121,6 +125,35 @@ double ComputeDustCarrier::compute_scalar()
   MPI_Allreduce(MPI_IN_PLACE, &tied, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   scalar = double(tied);
   return scalar;
+}
+
+/* ----------------------------------------------------------------------
+   last steps at which a neck formed or broke, a contact slid or rolled beyond its limit, of all contacts with carriers: those
+   of pairs of types of which a carrier has one. What grains do among themselves once they are off does not count.
+------------------------------------------------------------------------- */
+
+void ComputeDustCarrier::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  const int ntypes = atom->ntypes;
+  std::vector<int> is_carriers(ntypes + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & carrier_bit) is_carriers[atom->type[i]] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, is_carriers.data(), ntypes + 1, MPI_INT, MPI_MAX, world);
+
+  bigint last[3] = {-1, -1, -1};
+  for (int a = 1; a <= ntypes; a++)
+    for (int b = a; b <= ntypes; b++) {
+      if (!is_carriers[a] && !is_carriers[b]) continue;
+      const GranularModel *model = pair->models_list[pair->types_indices[a][b]];
+      const auto *normal = dynamic_cast<const GranSubModNormalJKRVdW *>(model->normal_model);
+      if (!normal) continue;
+      const auto &events = normal->last_events;
+      const bigint steps[3] = {events.neck, events.slide, events.roll};
+      for (int k = 0; k < 3; k++) last[k] = std::max(last[k], steps[k]);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, last, 3, MPI_LMP_BIGINT, MPI_MAX, world);
+  std::copy_n(last, 3, vector);
 }
 
 /* ---------------------------------------------------------------------- */

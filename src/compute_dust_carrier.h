@@ -15,7 +15,7 @@ ComputeStyle(dust/carrier,ComputeDustCarrier);
 
 namespace LAMMPS_NS {
 
-// per grain: ID of the carrier it is tied to by a chain of necks, 0 = detached
+// per grain: ID of the carrier it is tied to by a chain of necks, 0 = detached; when contacts last changed
 
 class ComputeDustCarrier : public Compute {
  public:
@@ -24,6 +24,7 @@ class ComputeDustCarrier : public Compute {
   void init() override;
   void compute_peratom() override;
   double compute_scalar() override;
+  void compute_vector() override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "granular_model.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,18 +117,19 @@ double GranSubModNormalJKRVdW::pulloff_distance(double radi, double radj)
 double GranSubModNormalJKRVdW::calculate_contact_radius()
 {
   use_radius(gm->Reff);
-  // a swap of i and j may have changed its sign
+  // x of the last step; a swap of i and j may have changed its sign
   double &kept = gm->history[neck_owner->history_index + neck_place];
   neck = gm->delta >= 0.0 || (kept != 0.0 && gm->delta > -delta_c);
+  x = neck ? Dust::jkr_contact_radius(gm->delta / delta_c, kept) : 0.0;
 
   if (gm->history_update) {
+    if (neck != (kept != 0.0)) last_events.neck = update->ntimestep;
     // nothing is remembered of before the neck: stock models sum up their displacements all the time
     if (!neck || kept == 0.0)
       for (const GranSubMod *model : gm->sub_models)
         std::fill_n(gm->history + model->history_index, model->size_history, 0.0);
-    kept = neck ? 1.0 : 0.0;
+    kept = x;
   }
-  x = neck ? Dust::jkr_contact_radius(gm->delta / delta_c) : 0.0;
   return x * a0;
 }
 

@@ -16,6 +16,13 @@ GranSubModStyle(jkr/vdw,GranSubModNormalJKRVdW,NORMAL);
 namespace LAMMPS_NS {
 namespace Granular_NS {
 
+  // last step at which any contact of a model changed for good, -1 = none has; each rank knows its own contacts
+  struct LastEvents {
+    bigint neck = -1;     // formed or broke
+    bigint slide = -1;    // friction at its limit
+    bigint roll = -1;     // rolling displacement at its limit
+  };
+
   // adhesive contact: full JKR branch while a neck exists, Hamaker's attraction while none does
 
   class GranSubModNormalJKRVdW : public GranSubModNormal {
@@ -33,6 +40,8 @@ namespace Granular_NS {
     bool has_neck() const { return neck; }
     double pull_off_force() const { return Fc; }
     double equilibrium_contact_radius() const { return a0; }
+
+    LastEvents last_events;    // slide and roll by the rolling model
 
     // whether a contact with this history has a neck
     bool keeps_neck(const double *history) const { return history[neck_owner->history_index + neck_place] != 0.0; }

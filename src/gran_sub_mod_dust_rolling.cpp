@@ -8,7 +8,9 @@
 #include "gran_sub_mod_dust_normal.h"
 
 #include "error.h"
+#include "gran_sub_mod_tangential.h"
 #include "granular_model.h"
+#include "update.h"
 
 #include <algorithm>
 
@@ -75,6 +77,16 @@ template <typename Model> static double *full_step_normal(Model *gm, long)
 }
 
 /* ----------------------------------------------------------------------
+   the tangential model, called before, has cut its force down to the limit
+------------------------------------------------------------------------- */
+
+bool GranSubModRollingDominikTielens::slides() const
+{
+  const double limit = gm->tangential_model->get_mu() * normal->get_fncrit();
+  return limit > 0.0 && Dust::dot(gm->fs, gm->fs) > (1.0 - 1.0e-12) * limit * limit;
+}
+
+/* ----------------------------------------------------------------------
    M = -4 F_c (a/a0)^(3/2) xi; LAMMPS makes the moment R_eff n x fr of a rolling force fr
 ------------------------------------------------------------------------- */
 
@@ -88,7 +100,9 @@ void GranSubModRollingDominikTielens::calculate_forces()
   double xi[3];
   std::copy_n(gm->history + history_index, 3, xi);
   if (gm->history_update) {
-    Dust::roll_on(xi, full_step_normal(gm, 0), gm->vrl, gm->dt, gm->Reff * theta_crit);
+    if (Dust::roll_on(xi, full_step_normal(gm, 0), gm->vrl, gm->dt, gm->Reff * theta_crit))
+      normal->last_events.roll = update->ntimestep;
+    if (slides()) normal->last_events.slide = update->ntimestep;
     std::copy_n(xi, 3, gm->history + history_index);
   }
   const double x = gm->contact_radius / normal->equilibrium_contact_radius();

@@ -29,6 +29,7 @@ namespace Granular_NS {
     class GranSubModNormalJKRVdW *normal;
     double theta_crit;
     void find_normal_model();
+    bool slides() const;
   };
 
 }    // namespace Granular_NS

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+static constexpr double TWICE_ROOT = 3.6342411856642793;    // 2 6^(1/3)
+
 /* ----------------------------------------------------------------------
    y = sqrt(x) solves y^4 - (2/3) y = D with D = d/(2 6^(1/3)). It is the larger root of y^2 - m y + s, where z = m^2
    solves z^3 + 4 D z = 4/9; Cardano's cube roots u, v of z = u + v have the product -4 D/3.
@@ -13,7 +15,6 @@
 
 double Dust::jkr_contact_radius(double d)
 {
-  constexpr double TWICE_ROOT = 3.6342411856642793;    // 2 6^(1/3)
   const double D = std::max(d, -1.0) / TWICE_ROOT;
   const double p = 4.0 / 3.0 * D;
   const double u = std::cbrt(2.0 / 9.0 + std::sqrt(std::max(0.0, 4.0 / 81.0 + p * p * p)));
@@ -26,4 +27,23 @@ double Dust::jkr_contact_radius(double d)
   const double slope = 4.0 * y * y * y - 2.0 / 3.0;
   const double step = slope > 1.0e-4 ? (y * (y * y * y - 2.0 / 3.0) - D) / slope : 0.0;
   return (y - step) * (y - step);
+}
+
+/* ----------------------------------------------------------------------
+   convex on the branch: a step from below lands above the root, from there on y falls towards it
+------------------------------------------------------------------------- */
+
+double Dust::jkr_contact_radius(double d, double guess)
+{
+  const double D = d / TWICE_ROOT;
+  double y = std::sqrt(std::fabs(guess));
+  for (int k = 0; k < 4; k++) {
+    const double y3 = y * y * y;
+    const double slope = 4.0 * y3 - 2.0 / 3.0;
+    if (!(slope > 0.05)) break;    // near the end of the branch or beyond it
+    const double step = (y * (y3 - 2.0 / 3.0) - D) / slope;
+    y -= step;
+    if (std::fabs(step) < 1.0e-9 * y) return y * y;    // what is left is quadratic in it
+  }
+  return jkr_contact_radius(d);
 }

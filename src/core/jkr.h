@@ -58,6 +58,10 @@ inline double breaking_gap(double a0, double r12)
  * \return   x, from 6^(-2/3) on */
 double jkr_contact_radius(double d);
 
+/*! The same by Newton's method from a guess near the answer, such as x of a step before; in closed form if that fails.
+ *  \param guess  any value; its sign does not matter */
+double jkr_contact_radius(double d, double guess);
+
 /*! Force F/F_c = 4 (x^3 - x^(3/2)) on the branch at x = a/a0; negative pulls */
 inline double jkr_force(double x)
 {

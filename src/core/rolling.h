@@ -18,15 +18,17 @@ namespace Dust {
  * \param xi        rolling displacement of the last step, changed
  * \param n         unit normal now
  * \param velocity  rolling velocity, in the tangential plane
- * \param limit     xi_crit = R_12 theta_crit */
-inline void roll_on(double *xi, const double *n, const double *velocity, double dt, double limit)
+ * \param limit     xi_crit = R_12 theta_crit
+ * \return          whether the pivot gave way */
+inline bool roll_on(double *xi, const double *n, const double *velocity, double dt, double limit)
 {
   const double along = dot(xi, n), size2 = dot(xi, xi), left = size2 - along * along;
   const double turned = left > 0.0 ? std::sqrt(size2 / left) : 0.0;
   for (int d = 0; d < 3; d++) xi[d] = turned * (xi[d] - along * n[d]) + dt * velocity[d];
   const double size = std::sqrt(dot(xi, xi));
-  if (size > limit)
-    for (int d = 0; d < 3; d++) xi[d] *= limit / size;
+  if (!(size > limit)) return false;
+  for (int d = 0; d < 3; d++) xi[d] *= limit / size;
+  return true;
 }
 
 /*! Rolling stiffness k of the moment M = k xi of resistance, 4 F_c (a/a0)^(3/2)

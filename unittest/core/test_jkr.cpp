@@ -54,6 +54,21 @@ TEST(Jkr, ReferenceGrain)
   EXPECT_NEAR(Dust::equilibrium_overlap(a0, r12) / Dust::breaking_gap(a0, r12), overlap(1.0), 1e-14);
 }
 
+// from whatever guess: below, at and above the answer, off the branch, without a meaning
+TEST(Jkr, InverseFromAGuess)
+{
+  for (double t = -40.0; t < 12.0; t += 0.01) {
+    const double d = std::exp(t) - 1.0;
+    const double x = Dust::jkr_contact_radius(d);
+    for (const double guess : {x, -x, 0.99 * x, 1.01 * x, 0.1 * x, 10.0 * x, 0.0, 1.0, 1e300, std::nan("")}) {
+      const double found = Dust::jkr_contact_radius(d, guess);
+      ASSERT_LE(std::fabs(overlap(found) - d), 1e-14 * std::max(1.0, d)) << "d = " << d << ", guess " << guess;
+      // sqrt(2 residual / curvature) at the end of the branch, where the slope vanishes
+      ASSERT_NEAR(found, x, d >= -0.99 ? 1e-12 * std::max(1.0, x) : 1e-7) << "d = " << d << ", guess " << guess;
+    }
+  }
+}
+
 TEST(Jkr, InverseOverTheWholeBranch)
 {
   // round-off of delta/delta_c itself is what is left where it is large

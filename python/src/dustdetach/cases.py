@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from .errors import InvalidInput
-from .impact import PARAMETERS, Impact
+from .impact import METHODS, PARAMETERS, Impact
 
 #: impact speeds of both figures, m/s: dense where the near side lets go (1-4) and the far side begins (5-8)
 SPEEDS = (
@@ -44,6 +45,20 @@ def named_or_file(name: str) -> list[Impact]:
     if name in NAMED:
         return NAMED[name]()
     return read_cases(Path(name))
+
+
+def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
+    """The cases by another method, or by ``both`` (first all by functions, in seconds); as they are for ``None``.
+
+    Raises:
+        InvalidInput: no such method, or a case that the method does not take.
+    """
+    if method is None:
+        return cases
+    if method not in (*METHODS, "both"):
+        raise InvalidInput(f"--method: unknown choice '{method}'; allowed: {', '.join(METHODS)}, both")
+    chosen = METHODS if method == "both" else (method,)
+    return list(dict.fromkeys(replace(case, method=name) for name in chosen for case in cases))
 
 
 def read_cases(path: Path) -> list[Impact]:

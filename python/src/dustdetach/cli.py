@@ -13,10 +13,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from .cases import NAMED, named_or_file
+from .cases import NAMED, named_or_file, with_methods
 from .errors import InvalidInput, LammpsMissing
 from .files import writable_file
-from .impact import PARAMETER_TYPES, TANGENTIAL, Impact, option
+from .impact import METHODS, PARAMETER_TYPES, TANGENTIAL, Impact, option
 from .result import Result
 from .version import __version__
 
@@ -81,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     impact = _command(commands, "impact", "one impact", _impact)
-    _add_method(impact)
+    impact.add_argument("--method", default=argparse.SUPPRESS, help=", ".join(METHODS) + f" ({Impact.method})")
     for name in _HELP:
         _add_parameter(impact, name, required=name == "speed")
     impact.add_argument(
@@ -92,7 +92,7 @@ def _parser() -> argparse.ArgumentParser:
 
     sweep = _command(commands, "sweep", "many impacts into a folder; picks up where it stopped", _sweep)
     sweep.add_argument("cases", metavar="|".join(NAMED) + "|FILE.toml", help="a figure of the paper, or a TOML file")
-    _add_method(sweep)
+    sweep.add_argument("--method", help=", ".join(METHODS) + f", both (as the cases say, else {Impact.method})")
     sweep.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the results")
     sweep.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (1)")
     sweep.add_argument("--executor", default="local", help="local, or mpi under mpirun (local)")
@@ -123,10 +123,6 @@ def _command(commands: Any, name: str, text: str, run: Callable[[argparse.Namesp
     parser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", allow_abbrev=False)
     parser.set_defaults(run=run, program=parser.prog)
     return parser
-
-
-def _add_method(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--method", default="functions", help="functions (resolved and both are not there yet)")
 
 
 def _add_parameter(parser: argparse.ArgumentParser, name: str, *, required: bool) -> None:
@@ -161,13 +157,16 @@ def _impact(options: argparse.Namespace, _: bool) -> int:
 
 
 def _summary(result: Result) -> str:
+    modes = []
+    if result.normal is not None and result.tangential_mode is not None:
+        modes = [f"  by lift-off      normal {result.normal:.4f}   tangential {result.tangential_mode:.4f}"]
     return "\n".join(
         [
             f"impact at {result.speed:g} m/s, {result.angle:g} degrees, restitution {result.restitution:g}, "
             f"{result.grains} grains",
             f"dispersion ratio   {result.dispersion_ratio:.4f}",
             f"  by hemisphere    south {result.south:.4f}   north {result.north:.4f}",
-            f"  by lift-off      normal {result.normal:.4f}   tangential {result.tangential_mode:.4f}",
+            *modes,
             f"collision          {result.contact_time * 1e6:.3f} us, peak acceleration "
             f"{result.peak_acceleration:.4g} m/s2, restitution {result.restitution_realised:.4f}",
             f"ended by {result.end} after {result.steps} steps, {result.wall_seconds:.2f} s",
@@ -178,9 +177,7 @@ def _summary(result: Result) -> str:
 def _sweep(options: argparse.Namespace, speaks: bool) -> int:
     from .sweeping import CasesFailed, sweep
 
-    if options.method != "functions":
-        raise InvalidInput(f"--method: {options.method} is not there yet; allowed: functions")
-    cases = named_or_file(options.cases)
+    cases = with_methods(named_or_file(options.cases), options.method)
     if options.out.exists() and not options.out.is_dir():
         raise InvalidInput(f"--out: {options.out} is a file; allowed: the name of a folder")
     progress = _Progress() if speaks else None

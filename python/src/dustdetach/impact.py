@@ -8,7 +8,7 @@ from typing import Any
 
 from .errors import InvalidInput
 
-METHODS = ("functions",)
+METHODS = ("functions", "resolved")
 TANGENTIAL = ("estimate", "frictionless", "off")
 
 #: share of a surface that random sequential placement of discs covers before it jams
@@ -29,6 +29,16 @@ def option(field: str) -> str:
 CARRIER_DENSITY = 7700.0
 CONTACT_MODULUS = 210e9 / (2 * (1 - 0.3**2))
 
+#: the deck's grains of calcium carbonate: kg/m3, and E* of grain and steel in Pa
+GRAIN_DENSITY = 2700.0
+GRAIN_MODULUS = 1 / ((1 - 0.3**2) / 75e9 + (1 - 0.3**2) / 210e9)
+
+#: time steps that resolve an oscillation of a grain on its carrier
+LEAST_GRAIN_STEPS = 30
+
+#: the most grains of a resolved run, about 4 GB
+MOST_RESOLVED_GRAINS = 100_000
+
 #: a contact of fewer steps is not resolved, one of more does not end within the deck's step limit
 LEAST_STEPS, MOST_STEPS = 50, 100_000
 
@@ -41,7 +51,8 @@ class Impact:
     20 um at a coverage of 0.2.
 
     Attributes:
-        method: ``functions``, the detachment functions on a carrier without grains as atoms.
+        method: ``functions``, the detachment functions on a carrier without grains as atoms, or ``resolved``, every
+            grain an atom with adhesive contacts.
         speed: impact speed, m/s, above 0 and at most 100.
         angle: between velocity and wall plane, degrees, above 0 and at most 90 (straight).
         restitution: coefficient of restitution e_pw of carrier and wall, above 0 and at most 1.
@@ -56,9 +67,11 @@ class Impact:
         wall_friction: mu between carrier and wall, from 0 to 10.
         grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0; only resolved runs use it.
         seed: of the random texture, 1 to 900000000.
-        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``frictionless`` (Eq. 4) or ``off``.
+        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``frictionless`` (Eq. 4) or ``off``; resolved
+            runs do not use it.
         rotation: whether the carrier's spin is followed; ``False``, as in the paper.
-        timestep: s, above 0 and at most 1e-7.
+        timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
+            grain's oscillation.
 
     Raises:
         InvalidInput: a value outside its range; the message names the option.
@@ -88,8 +101,6 @@ class Impact:
             value = _convert(field.name, str(field.type), getattr(self, field.name))
             object.__setattr__(self, field.name, value)
 
-        if self.method == "resolved":
-            raise InvalidInput("--method: resolved impacts are not there yet; allowed: functions")
         _one_of("method", self.method, METHODS)
         _one_of("tangential", self.tangential, TANGENTIAL)
         if self.rotation:
@@ -129,6 +140,30 @@ class Impact:
                 f"{self.hertz_contact_time:.3g} s; allowed: {self.hertz_contact_time / MOST_STEPS:.3g} to "
                 f"{self.hertz_contact_time / LEAST_STEPS:.3g} s for this speed, angle and carrier diameter"
             )
+
+        if self.method == "resolved":
+            if self.grains > MOST_RESOLVED_GRAINS:
+                raise InvalidInput(
+                    f"--grain-diameter: {self.grain_diameter:g} makes {self.grains:.3g} grains; allowed in a resolved "
+                    f"run: at most {MOST_RESOLVED_GRAINS}"
+                )
+            longest = self.grain_period / LEAST_GRAIN_STEPS
+            if self.timestep > longest:
+                raise InvalidInput(
+                    f"--timestep: {self.timestep:g} s does not resolve the contact of a grain, which oscillates in "
+                    f"{self.grain_period:.3g} s; allowed: at most {longest:.3g} s"
+                )
+
+    @property
+    def grain_period(self) -> float:
+        """Period of a grain that oscillates about its equilibrium overlap on the carrier, 2 pi sqrt(m_d/k_0), s.
+
+        k_0 = 6/5 E* a_0 with a_0 = (A R_12^2/(2 z0^2 E*))^(1/3).
+        """
+        effective = 1 / (2 / self.grain_diameter + 2 / self.carrier_diameter)
+        contact_radius = (self.hamaker * effective**2 / (2 * self.z0**2 * GRAIN_MODULUS)) ** (1 / 3)
+        mass = math.pi / 6 * self.grain_diameter**3 * GRAIN_DENSITY
+        return 2 * math.pi * math.sqrt(mass / (1.2 * GRAIN_MODULUS * contact_radius))
 
     @property
     def hertz_contact_time(self) -> float:

@@ -28,7 +28,8 @@ class Result:
         peak_acceleration: largest magnitude of the carrier's acceleration, m/s2.
         restitution_realised: normal speed after over normal speed before.
         steps: time steps taken.
-        end: why the run stopped: ``rebound`` or ``step limit``.
+        end: why the run stopped: ``rebound`` or ``step limit``; in a resolved run ``settled`` (no contact with the
+            carrier has changed for 40 us) or ``limit``.
         loop_seconds: LAMMPS' loop time, s.
         wall_seconds: the whole impact with set-up, s.
         lammps_version: as LAMMPS counts it, yyyymmdd.

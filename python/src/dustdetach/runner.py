@@ -1,4 +1,4 @@
-"""Runs one impact: the deck in.impact on a LAMMPS instance in this process."""
+"""Runs one impact: the deck of its method on a LAMMPS instance in this process."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from .places import find_deck
 from .result import Result
 from .session import lammps_session
 
-DECK = "in.impact"
+#: the deck of each method
+DECKS = {"functions": "in.impact", "resolved": "in.impact.resolved"}
 
-# parameters that the deck takes as variables of the same name
+# parameters that the decks take as variables of the same name
 _VARIABLES = (
     "speed",
     "angle",
@@ -29,22 +30,23 @@ _VARIABLES = (
     "friction",
     "wall_friction",
     "seed",
-    "tangential",
     "timestep",
 )
+_VARIABLES_OF = {"functions": (*_VARIABLES, "tangential"), "resolved": (*_VARIABLES, "grain_damping")}
 
 # the outputs of fix dust/detach that are read here, counted from 0 as the library interface does
 _INITIAL, _NORMAL, _TANGENTIAL, _SOUTH, _NORTH, _COLLISIONS = 0, 2, 3, 4, 5, 8
 _CONTACT_TIME, _PEAK_ACCELERATION = 3, 4
 
 
-def run(impact: Impact, *, comm: Any = None, events: Path | None = None) -> Result:
-    """Run one impact with the detachment functions.
+def run(impact: Impact, *, comm: Any = None, events: Path | None = None, frames: Path | None = None) -> Result:
+    """Run one impact with the method it names.
 
     Args:
         impact: the parameters.
         comm: an mpi4py communicator for LAMMPS; all ranks of the process without one.
-        events: a file for every detachment of the run, as LAMMPS' dump local writes it; see `pictures`.
+        events: a file for every detachment, as LAMMPS' dump local writes it (method ``functions``); see `pictures`.
+        frames: a file for all grains every half microsecond, as LAMMPS' dump custom writes it (method ``resolved``).
 
     Returns:
         Dispersion ratio with its shares, and the collision's time, peak acceleration and restitution.
@@ -55,35 +57,53 @@ def run(impact: Impact, *, comm: Any = None, events: Path | None = None) -> Resu
     """
     started = time.perf_counter()
     parameters = asdict(impact)
-    variables = {name: parameters[name] for name in _VARIABLES}
+    variables = {name: parameters[name] for name in _VARIABLES_OF[impact.method]}
+    # quoted for the deck's command in which the name ends up
     if events is not None:
-        # quoted for the deck's command in which the name ends up
         variables["events"] = f'"{events}"'
-    deck = find_deck(DECK)
+    if frames is not None:
+        variables["dump"] = f'"{frames}"'
+    deck = find_deck(DECKS[impact.method])
     with lammps_session(variables, comm) as lmp:
         lmp.file(str(deck))
-        fix = _FixOutput(lmp)
-        grains = fix.vector(_INITIAL)
-        finished = fix.vector(_COLLISIONS) > 0
-        contact_time, peak_acceleration = fix.carrier(_CONTACT_TIME), fix.carrier(_PEAK_ACCELERATION)
-        approach = impact.speed * math.sin(math.radians(impact.angle))
+        read = _read_resolved if impact.method == "resolved" else _read_functions
         return Result(
             **parameters,
-            grains=int(grains),
-            dispersion_ratio=fix.scalar(),
-            north=fix.vector(_NORTH) / grains,
-            south=fix.vector(_SOUTH) / grains,
-            normal=fix.vector(_NORMAL) / grains,
-            tangential_mode=fix.vector(_TANGENTIAL) / grains,
-            contact_time=contact_time,
-            peak_acceleration=peak_acceleration,
-            restitution_realised=float(lmp.numpy.extract_atom("v")[0, 2]) / approach,
+            **read(lmp, impact),
             steps=int(lmp.extract_global("ntimestep")),
-            end="rebound" if finished else "step limit",
-            loop_seconds=float((lmp.last_thermo() or {}).get("CPU", 0.0)),
             wall_seconds=time.perf_counter() - started,
             lammps_version=lmp.version(),
         )
+
+
+def _read_functions(lmp: Any, impact: Impact) -> dict[str, Any]:
+    fix = _FixOutput(lmp)
+    grains = fix.vector(_INITIAL)
+    return {
+        "grains": int(grains),
+        "dispersion_ratio": fix.scalar(),
+        "north": fix.vector(_NORTH) / grains,
+        "south": fix.vector(_SOUTH) / grains,
+        "normal": fix.vector(_NORMAL) / grains,
+        "tangential_mode": fix.vector(_TANGENTIAL) / grains,
+        "contact_time": fix.carrier(_CONTACT_TIME),
+        "peak_acceleration": fix.carrier(_PEAK_ACCELERATION),
+        "restitution_realised": float(lmp.numpy.extract_atom("v")[0, 2])
+        / (impact.speed * math.sin(math.radians(impact.angle))),
+        "end": "rebound" if fix.vector(_COLLISIONS) > 0 else "step limit",
+        "loop_seconds": float((lmp.last_thermo() or {}).get("CPU", 0.0)),
+    }
+
+
+def _read_resolved(lmp: Any, _: Impact) -> dict[str, Any]:
+    names = ("dispersion_ratio", "north", "south", "contact_time", "peak_acceleration", "restitution_realised")
+    return {
+        **{name: float(lmp.extract_variable(name)) for name in (*names, "loop_seconds")},
+        "grains": int(lmp.extract_variable("grains")),
+        "normal": None,
+        "tangential_mode": None,
+        "end": lmp.extract_variable("end"),
+    }
 
 
 class _FixOutput:

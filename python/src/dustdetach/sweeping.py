@@ -27,7 +27,7 @@ from .files import replace_file
 from .impact import Impact
 from .places import find_deck, lammps_library, plugin_if_any
 from .result import Result, write_csv
-from .runner import DECK, run
+from .runner import DECKS, run
 from .version import __version__
 
 EXECUTORS = ("local", "mpi")
@@ -127,18 +127,18 @@ class Build:
     """What computes the results, and so belongs to the name of a case."""
 
     def __init__(self) -> None:
-        self.identity = {
-            "dustdetach": __version__,
-            "deck": _digest(find_deck(DECK)),
-            "lammps": _digest(lammps_library()),
-            "plugin": _plugin_digest(),
+        common = {"dustdetach": __version__, "lammps": _digest(lammps_library()), "plugin": _plugin_digest()}
+        self.identity = {method: {**common, "deck": _digest(find_deck(deck))} for method, deck in DECKS.items()}
+        self.suffixes = {
+            method: hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()[:8]
+            for method, identity in self.identity.items()
         }
-        self.suffix = hashlib.sha256(json.dumps(self.identity, sort_keys=True).encode()).hexdigest()[:8]
 
     def name(self, case: Impact) -> str:
         """Name of a case's folder: what varies most, then a digest of all parameters, then one of the build."""
         digest = hashlib.sha256(json.dumps(asdict(case)).encode()).hexdigest()[:12]
-        return f"{case.method}-v{case.speed:g}-a{case.angle:g}-e{case.restitution:g}-{digest}-{self.suffix}"
+        suffix = self.suffixes[case.method]
+        return f"{case.method}-v{case.speed:g}-a{case.angle:g}-e{case.restitution:g}-{digest}-{suffix}"
 
     def folder(self, out: Path, case: Impact) -> Path:
         """The case's folder in the sweep's."""
@@ -152,7 +152,9 @@ class _Table:
         self._path = folder / TABLE
         self._written = time.monotonic()
         self.rows = {
-            path.parent.name: Result.from_json(path.read_text()) for path in folder.glob(f"*-{build.suffix}/{COMPLETE}")
+            path.parent.name: Result.from_json(path.read_text())
+            for method, suffix in build.suffixes.items()
+            for path in folder.glob(f"{method}-*-{suffix}/{COMPLETE}")
         }
 
     def add(self, name: str, result: Result) -> None:
@@ -201,7 +203,7 @@ def _attempt(out: Path, build: Build, case: Impact, comm: Any = None) -> Outcome
         return case, None, str(error)
     folder = build.folder(out, case)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "build.json").write_text(json.dumps(build.identity, indent=1) + "\n")
+    (folder / "build.json").write_text(json.dumps(build.identity[case.method], indent=1) + "\n")
     with replace_file(folder / COMPLETE) as part:
         part.write_text(result.to_json() + "\n")
     return case, result, ""
