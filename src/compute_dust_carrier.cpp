@@ -95,7 +95,7 @@ void ComputeDustCarrier::compute_peratom()
         const int j = list->firstneigh[i][jj] & NEIGHMASK;
         const GranularModel *model = pair->models_list[pair->types_indices[type[i]][type[j]]];
         const auto *normal = dynamic_cast<const GranSubModNormalJKRVdW *>(model->normal_model);
-        if (!normal || !normal->keeps_neck(history->firstvalue[i] + size * jj)) continue;
+        if (!normal || normal->neck_in(history->firstvalue[i] + size * jj) == 0.0) continue;
         double &a = vector_atom[i], &b = vector_atom[j];
         // a carrier keeps its own ID
         if (b > a && !(mask[i] & carrier_bit)) { a = b; changed = 1; }

@@ -8,7 +8,11 @@
 #include "core/jkr.h"
 
 #include "error.h"
+#include "force.h"
+#include "gran_sub_mod_heat.h"
 #include "granular_model.h"
+#include "neigh_request.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -22,11 +26,51 @@ static constexpr double CUTOFF = 10.0;    // of the attraction, in z0: a hundred
 /* ---------------------------------------------------------------------- */
 
 GranSubModNormalJKRVdW::GranSubModNormalJKRVdW(GranularModel *gm, LAMMPS *lmp) :
-    GranSubModNormal(gm, lmp), mixed_modulus(0.0), last_Reff(-1.0), neck(false), neck_owner(this), neck_place(0)
+    GranSubModNormal(gm, lmp), mixed_modulus(0.0), last_Reff(-1.0), warned(false), neck(false), laid_out(-1)
 {
   num_coeffs = 5;
-  size_history = 1;
   material_properties = cohesive_flag = beyond_contact = contact_radius_flag = 1;
+}
+
+GranSubModNormalJKRVdWCut::GranSubModNormalJKRVdWCut(GranularModel *gm, LAMMPS *lmp) : GranSubModNormalJKRVdW(gm, lmp)
+{
+  num_coeffs = 6;
+}
+
+/* ----------------------------------------------------------------------
+   Neck and rolling displacement are kept at the end of the history, in the place of the heat model, the last one: there they
+   move no value of other models in the same pair style, which LAMMPS would then copy wrongly when i and j change places.
+------------------------------------------------------------------------- */
+
+void GranSubModNormalJKRVdW::init()
+{
+  gm->heat_model->size_history = 4;
+  gm->size_history = 0;
+  for (const GranSubMod *model : gm->sub_models) gm->size_history += model->size_history;
+  laid_out = -1;
+}
+
+int GranSubModNormalJKRVdW::neck_place() const
+{
+  return gm->heat_model->history_index;
+}
+
+/* ----------------------------------------------------------------------
+   When i and j change places, LAMMPS copies as many values as this model has, but keeps room for the largest sub-model of
+   each kind between them: count the gaps too.
+------------------------------------------------------------------------- */
+
+void GranSubModNormalJKRVdW::lay_out_history()
+{
+  laid_out = neck_place();
+  gm->size_history = laid_out + gm->heat_model->size_history;
+  if (!gm->nondefault_history_transfer) return;
+  delete[] gm->transfer_history_factor;
+  gm->transfer_history_factor = new double[gm->size_history];
+  std::fill_n(gm->transfer_history_factor, gm->size_history, -1.0);
+  for (const GranSubMod *model : gm->sub_models)
+    if (model->nondefault_history_transfer)
+      std::copy_n(model->transfer_history_factor, model->size_history, gm->transfer_history_factor + model->history_index);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -38,43 +82,41 @@ void GranSubModNormalJKRVdW::coeffs_to_local()
   poiss = coeffs[2];
   hamaker = coeffs[3];
   z0 = coeffs[4];
+  z_cut = num_coeffs > 5 ? coeffs[5] : CUTOFF * z0;
 
-  if (!(Emod > 0.0)) error->all(FLERR, "Normal model jkr/vdw: E {} must be above 0", Emod);
-  if (!(damp >= 0.0)) error->all(FLERR, "Normal model jkr/vdw: eta {} must be at least 0", damp);
-  if (!(poiss > -1.0 && poiss <= 0.5)) error->all(FLERR, "Normal model jkr/vdw: nu {} must be above -1 and at most 0.5", poiss);
-  if (!(hamaker > 0.0)) error->all(FLERR, "Normal model jkr/vdw: A {} must be above 0", hamaker);
-  if (!(z0 > 0.0)) error->all(FLERR, "Normal model jkr/vdw: z0 {} must be above 0", z0);
+  if (!(Emod > 0.0)) error->all(FLERR, "Normal model {}: E {} must be above 0", name, Emod);
+  if (!(damp >= 0.0)) error->all(FLERR, "Normal model {}: eta {} must be at least 0", name, damp);
+  if (!(poiss > -1.0 && poiss <= 0.5)) error->all(FLERR, "Normal model {}: nu {} must be above -1 and at most 0.5", name, poiss);
+  if (!(hamaker > 0.0)) error->all(FLERR, "Normal model {}: A {} must be above 0", name, hamaker);
+  if (!(z0 > 0.0)) error->all(FLERR, "Normal model {}: z0 {} must be above 0", name, z0);
+  if (!(z_cut > z0)) error->all(FLERR, "Normal model {}: z_cut {} must be above z0 {}", name, z_cut, z0);
 
   modulus = mixed_modulus > 0.0 ? mixed_modulus : Dust::combined_modulus(Emod, poiss, Emod, poiss);
   gamma = Dust::surface_energy(hamaker, z0);
-  range = (CUTOFF - 1.0) * z0;
+  range = z_cut - z0;
   last_Reff = -1.0;
 }
 
 /* ----------------------------------------------------------------------
-   a mixed model gets the modulus E that gives the two materials' E*, for models that ask it for E
+   a mixed model gets the E and nu of a body whose contact with its like has the two materials' combined moduli E* and G*, for
+   models that ask it for them: 2 G* = E* (1 - nu)/(2 - nu)
 ------------------------------------------------------------------------- */
 
 void GranSubModNormalJKRVdW::mix_coeffs(double *icoeffs, double *jcoeffs)
 {
-  if (icoeffs[4] != jcoeffs[4])
-    error->all(FLERR, "Normal model jkr/vdw cannot mix z0 {} and {}: give the pair its own pair_coeff", icoeffs[4], jcoeffs[4]);
+  static constexpr const char *SAME = "Normal model {} cannot mix {} {} and {}: give the pair its own pair_coeff";
+  if (icoeffs[4] != jcoeffs[4]) error->all(FLERR, SAME, name, "z0", icoeffs[4], jcoeffs[4]);
+  if (num_coeffs > 5 && icoeffs[5] != jcoeffs[5]) error->all(FLERR, SAME, name, "z_cut", icoeffs[5], jcoeffs[5]);
+  std::copy_n(icoeffs, num_coeffs, coeffs);
   mixed_modulus = Dust::combined_modulus(icoeffs[0], icoeffs[2], jcoeffs[0], jcoeffs[2]);
-  coeffs[1] = mix_geom(icoeffs[1], jcoeffs[1]);
-  coeffs[2] = mix_mean(icoeffs[2], jcoeffs[2]);
+  if (icoeffs[2] != jcoeffs[2]) {
+    const double ratio = 2.0 * mix_stiffnessG(icoeffs[0], jcoeffs[0], icoeffs[2], jcoeffs[2]) / mixed_modulus;
+    coeffs[2] = (1.0 - 2.0 * ratio) / (1.0 - ratio);
+  }
   coeffs[0] = 2.0 * mixed_modulus * (1.0 - coeffs[2] * coeffs[2]);
+  coeffs[1] = mix_geom(icoeffs[1], jcoeffs[1]);
   coeffs[3] = mix_geom(icoeffs[3], jcoeffs[3]);
-  coeffs[4] = icoeffs[4];
   coeffs_to_local();
-}
-
-/* ---------------------------------------------------------------------- */
-
-void GranSubModNormalJKRVdW::keep_neck_in(GranSubMod *owner, int place)
-{
-  size_history = 0;
-  neck_owner = owner;
-  neck_place = place;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -86,6 +128,12 @@ void GranSubModNormalJKRVdW::use_radius(double Reff)
   Fc = Dust::pull_off_force(gamma, Reff);
   a0 = Dust::equilibrium_contact_radius(gamma, Reff, modulus);
   delta_c = Dust::breaking_gap(a0, Reff);
+  const double shared = std::min(delta_c, range);
+  if (!warned && Dust::NECK_WORK * delta_c < z0 * shared / (z0 + shared)) {
+    warned = true;
+    error->warning(FLERR, "Normal model {}: with an effective radius of {} the neck breaks at a gap of {} z0: a bounce gains energy",
+                   name, Reff, delta_c / z0);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -107,7 +155,22 @@ double GranSubModNormalJKRVdW::pulloff_distance(double radi, double radj)
 {
   if (radi <= 0.0 || (radj <= 0.0 && gm->contact_type == PAIR)) return 0.0;
   const double Reff = radj > 0.0 ? Dust::effective_radius(radi, radj) : radi;
-  return std::max(Dust::breaking_gap(Dust::equilibrium_contact_radius(gamma, Reff, modulus), Reff), range);
+  const double reach = std::max(Dust::breaking_gap(Dust::equilibrium_contact_radius(gamma, Reff, modulus), Reff), range);
+  if (gm->contact_type == PAIR) check_skin(reach);
+  return reach;
+}
+
+/* ----------------------------------------------------------------------
+   pair lists by radii (4Feb2025) reach as far as the skin beyond contact
+------------------------------------------------------------------------- */
+
+void GranSubModNormalJKRVdW::check_skin(double reach)
+{
+  const Pair *pair = force->pair_match("granular", 1);
+  const NeighRequest *request = pair ? neighbor->find_request((void *) pair) : nullptr;
+  if (request && request->get_size() && neighbor->skin < reach)
+    error->all(FLERR, "Normal model {}: this LAMMPS needs a neighbor skin of at least the attraction's reach {}, not {}",
+               name, reach, neighbor->skin);
 }
 
 /* ----------------------------------------------------------------------
@@ -117,18 +180,19 @@ double GranSubModNormalJKRVdW::pulloff_distance(double radi, double radj)
 double GranSubModNormalJKRVdW::calculate_contact_radius()
 {
   use_radius(gm->Reff);
-  // x of the last step; a swap of i and j may have changed its sign
-  double &kept = gm->history[neck_owner->history_index + neck_place];
+  if (laid_out != neck_place()) lay_out_history();
+  double &kept = gm->history[laid_out];
   neck = gm->delta >= 0.0 || (kept != 0.0 && gm->delta > -delta_c);
   x = neck ? Dust::jkr_contact_radius(gm->delta / delta_c, kept) : 0.0;
 
   if (gm->history_update) {
     if (neck != (kept != 0.0)) last_events.neck = update->ntimestep;
     // nothing is remembered of before the neck: stock models sum up their displacements all the time
-    if (!neck || kept == 0.0)
+    const double before = kept;
+    if (!neck || before == 0.0)
       for (const GranSubMod *model : gm->sub_models)
         std::fill_n(gm->history + model->history_index, model->size_history, 0.0);
-    kept = x;
+    kept = std::copysign(x, before);
   }
   return x * a0;
 }

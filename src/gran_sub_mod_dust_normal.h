@@ -5,6 +5,7 @@
 #ifdef GRAN_SUB_MOD_CLASS
 // clang-format off
 GranSubModStyle(jkr/vdw,GranSubModNormalJKRVdW,NORMAL);
+GranSubModStyle(jkr/vdw/cut,GranSubModNormalJKRVdWCut,NORMAL);
 // clang-format on
 #else
 
@@ -28,6 +29,7 @@ namespace Granular_NS {
   class GranSubModNormalJKRVdW : public GranSubModNormal {
    public:
     GranSubModNormalJKRVdW(class GranularModel *, class LAMMPS *);
+    void init() override;
     void coeffs_to_local() override;
     void mix_coeffs(double *, double *) override;
     bool touch() override;
@@ -43,23 +45,34 @@ namespace Granular_NS {
 
     LastEvents last_events;    // slide and roll by the rolling model
 
-    // whether a contact with this history has a neck
-    bool keeps_neck(const double *history) const { return history[neck_owner->history_index + neck_place] != 0.0; }
-
-    // another sub-model keeps the neck in its history, at this place of it; see GranSubModRollingDominikTielens
-    void keep_neck_in(GranSubMod *, int);
+    // of a contact with this history: 0 without a neck, else a/a0 or -a/a0; LAMMPS negates all history when i and j change
+    // places
+    double neck_in(const double *history) const { return history[neck_place()]; }
+    // three values that a rolling model may keep in this history
+    double *rolling_in(double *history) const { return history + neck_place() + 1; }
 
    private:
-    double hamaker, z0, range, gamma, modulus;
+    double hamaker, z0, z_cut, range, gamma, modulus;
     double mixed_modulus;    // 0 if the materials are equal
     // what depends on the effective radius alone, of the last one
     double last_Reff, Fc, a0, delta_c;
+    bool warned;
     void use_radius(double);
+    void check_skin(double);
     // the contact at hand
     bool neck;
     double x, Fne;    // a/a0; elastic-adhesive force
-    GranSubMod *neck_owner;
-    int neck_place;
+    // where the history keeps the neck
+    int laid_out;
+    int neck_place() const;
+    void lay_out_history();
+  };
+
+  // the same with the end of the attraction as a coefficient
+
+  class GranSubModNormalJKRVdWCut : public GranSubModNormalJKRVdW {
+   public:
+    GranSubModNormalJKRVdWCut(class GranularModel *, class LAMMPS *);
   };
 
 }    // namespace Granular_NS

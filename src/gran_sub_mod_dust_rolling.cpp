@@ -13,25 +13,20 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace Granular_NS;
 
 /* ----------------------------------------------------------------------
-   history: rolling displacement, then the normal model's neck. A displacement is even under a swap of i and j, as the
-   rolling velocity is: the factor is +1 where LAMMPS' default is -1. Once a model has factors of its own, LAMMPS copies
-   of each other model's history no more than its size, from the start of the storage: with the neck at the end rather
-   than in the normal model's place at the start, models without one keep theirs whole.
+   The rolling displacement is even under a swap of i and j, as the rolling velocity is, but LAMMPS negates all history: so
+   it is kept times the sign of the neck, which is negated with it, and in the normal model's place.
 ------------------------------------------------------------------------- */
 
 GranSubModRollingDominikTielens::GranSubModRollingDominikTielens(GranularModel *gm, LAMMPS *lmp) :
     GranSubModRolling(gm, lmp), normal(nullptr)
 {
   num_coeffs = 1;
-  size_history = 4;
-  nondefault_history_transfer = 1;
-  transfer_history_factor = new double[size_history];
-  std::fill_n(transfer_history_factor, size_history, 1.0);
   contact_radius_flag = 1;
 }
 
@@ -52,7 +47,6 @@ void GranSubModRollingDominikTielens::find_normal_model()
   if (!normal)
     error->all(FLERR, "Rolling model dominik/tielens needs a normal model that knows the pull-off force: jkr/vdw, not {}",
                gm->normal_model ? gm->normal_model->name : "none");
-  normal->keep_neck_in(this, 3);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -97,13 +91,14 @@ void GranSubModRollingDominikTielens::calculate_forces()
     std::fill_n(fr, 3, 0.0);
     return;
   }
-  double xi[3];
-  std::copy_n(gm->history + history_index, 3, xi);
+  double *history = normal->rolling_in(gm->history), xi[3];
+  const double sign = std::copysign(1.0, normal->neck_in(gm->history));
+  for (int d = 0; d < 3; d++) xi[d] = sign * history[d];
   if (gm->history_update) {
     if (Dust::roll_on(xi, full_step_normal(gm, 0), gm->vrl, gm->dt, gm->Reff * theta_crit))
       normal->last_events.roll = update->ntimestep;
     if (slides()) normal->last_events.slide = update->ntimestep;
-    std::copy_n(xi, 3, gm->history + history_index);
+    for (int d = 0; d < 3; d++) history[d] = sign * xi[d];
   }
   const double x = gm->contact_radius / normal->equilibrium_contact_radius();
   const double k = Dust::rolling_stiffness(normal->pull_off_force(), x) / gm->Reff;

@@ -50,6 +50,9 @@ inline double breaking_gap(double a0, double r12)
   return a0 * a0 / (2.0 * 1.8171205928321397 * r12);    // 6^(1/3)
 }
 
+/*! Work of a neck along the branch from the overlap 0 to its end, in F_c delta_c */
+constexpr double NECK_WORK = 0.9355;
+
 /*! Contact radius a/a0 on the stable branch from the overlap: the largest x with
  *  delta/delta_c = 6^(1/3) (2 x^2 - (4/3) sqrt(x)).
  *

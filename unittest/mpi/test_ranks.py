@@ -81,3 +81,40 @@ def test_real_grains_stay_tied_on_any_number_of_ranks(tmp_path, newton):
     assert 0 < sum(line.endswith(" 1 ") or line.endswith(" 1") for line in tied[0].splitlines()[9:]) < 450
     assert tied[1] == tied[0]
     assert tied[2] == tied[0]
+
+
+def swap(folder: Path, ranks: int = 1, **variables: str) -> list[list[float]]:
+    """Rows of id x y z vx vy vz omega after in.swap."""
+    command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-in", str(DECK.with_name("in.swap")), "-log", "none"]
+    for name, value in variables.items():
+        command += ["-var", name, value]
+    done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    return [[float(word) for word in line.split()] for line in (folder / "swap.txt").read_text().splitlines()[9:]]
+
+
+def assert_same_motion(rows: list[list[float]], expected: list[list[float]]):
+    """To the round-off of positions, 1e-10 of an overlap; what the history does to the motion in this time is a percent."""
+    assert len(rows) == len(expected) == 8
+    for row, other in zip(rows, expected):
+        assert row[4:7] == pytest.approx(other[4:7], abs=1e-6)
+        assert row[7:] == pytest.approx(other[7:], abs=1e-2)
+
+
+@pytest.mark.parametrize("models", ["plain", "gaps", "large"])
+def test_contacts_survive_a_swap_of_their_atoms(tmp_path, models):
+    """Necks, sliding and rolling displacements beside models with other histories, when atoms are sorted or change ranks."""
+    expected = swap(tmp_path, models=models)
+    order = [line for line in (tmp_path / "swap.txt.order").read_text().splitlines() if line.isdigit()]
+    assert_same_motion(swap(tmp_path, models=models, sort="200"), expected)
+    swapped = [line for line in (tmp_path / "swap.txt.order").read_text().splitlines() if line.isdigit()]
+    assert swapped != order
+    for ranks, newton in (2, "on"), (4, "off"):
+        assert_same_motion(swap(tmp_path, ranks, models=models, newton=newton), expected)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_keeps_necks_and_displacements(tmp_path, ranks):
+    expected = swap(tmp_path)
+    swap(tmp_path, steps="300", save="yes")
+    assert_same_motion(swap(tmp_path, ranks, start="restart"), expected)

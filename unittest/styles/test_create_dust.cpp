@@ -119,8 +119,8 @@ TEST(CreateDust, SortingAtomsChangesNothing)
   const auto run = [](const char *sorting, double *omega) {
     Deck deck;
     dusty_carriers(deck, 3);
-    deck(std::string(sorting) + "\nvelocity all set 0 0 0\nset group carriers omega 0 0 0\nset group grains omega 2e3 -1e3 5e2\n"
-         "neigh_modify every 200 delay 0 check no\nrun 1000 post no");
+    deck("atom_modify sort 0 0\nvelocity all set 0 0 0\nset group carriers omega 0 0 0\nset group grains omega 2e3 -1e3 5e2\n"
+         "neigh_modify every 200 delay 0 check no\nrun 500\n" + std::string(sorting) + "\nrun 500 post no");    // sorts when a run starts
     for (int grain = 4; grain < 4 + 675; grain++)
       for (int d = 0; d < 3; d++) *omega++ = deck.atom("omega", grain)[d];
     return tied(deck);

@@ -6,6 +6,7 @@
 #include "jkr.h"
 
 #include <algorithm>
+#include <fstream>
 
 namespace {
 
@@ -233,6 +234,47 @@ TEST(JkrVdw, NoFrictionRollingOrDampingWithoutANeck)
   for (int d = 0; d < 3; d++) EXPECT_EQ(deck.atom("torque", 1)[d], 0.0);
 }
 
+TEST(JkrVdw, EndOfTheAttractionIsACoefficient)
+{
+  const Grain g(10e-6, 0.4e-9);
+  const auto force = [&](double gap, const std::string &words) {
+    Deck deck;
+    grain_on_wall(deck, g, gap, plane_wall(words), 1e-9, 0.0);
+    deck("fix move all nve/noforce\nrun 0 post no");
+    return deck.atom("f", 1)[2];
+  };
+  const std::string coefficients = line("1.1053e11 0 0.3 %.17g 4e-10", HAMAKER), rest = " damping viscoelastic tangential mindlin NULL 0.0 0.3";
+  const auto with = [&](const char *end) { return "jkr/vdw/cut " + coefficients + " " + end + rest; };
+  for (double gap : {-1e-9, -0.2e-9, 0.1e-9, 3.5e-9, 3.599e-9, 3.601e-9})
+    EXPECT_EQ(force(gap, with("4e-9")), force(gap, "jkr/vdw " + coefficients + rest)) << gap;
+  EXPECT_EQ(force(3.601e-9, with("4e-9")), 0.0);
+  EXPECT_EQ(force(0.7e-9, with("1e-9")), 0.0);
+  const double expected = Dust::hamaker_force(HAMAKER, g.z0, g.radius, 19e-9);
+  EXPECT_NEAR(-force(19e-9, with("20e-9")), expected, 1e-5 * expected);
+  EXPECT_EQ(force(19.7e-9, with("20e-9")), 0.0);
+  EXPECT_LT(force(-g.delta_0, with("4e-9 rolling dominik/tielens 0.15")), 1e-3 * g.fc);    // accepted
+}
+
+TEST(JkrVdw, WarnsOnceWhereABounceWouldGainEnergy)
+{
+  // delta_c/z0 is 0.069 at R = 17.9 nm for these; it grows as the cube root of R
+  const auto warnings = [](double ratio) {
+    const Grain one(1e-6, 0.4e-9), g(1e-6 * std::pow(ratio * one.z0 / one.delta_c, 3.0), 0.4e-9);
+    EXPECT_NEAR(g.delta_c / g.z0, ratio, 1e-6);
+    Deck deck;
+    deck("log dust_warnings.txt");
+    grain_on_wall(deck, g, 1e-9, plane_wall(model(g)), 1e-9, 0.0);
+    deck("fix move all nve/noforce\nrun 3 post no\nrun 3 post no\nlog none");
+    std::ifstream file("dust_warnings.txt");
+    int found = 0;
+    for (std::string text; std::getline(file, text);) found += text.find("WARNING") != std::string::npos && text.find("gains energy") != std::string::npos;
+    std::remove("dust_warnings.txt");
+    return found;
+  };
+  EXPECT_EQ(warnings(0.0685), 1);
+  EXPECT_EQ(warnings(0.0695), 0);
+}
+
 TEST(JkrVdw, WrongInputIsNamed)
 {
   const Grain g(10e-6, 0.4e-9);
@@ -248,6 +290,7 @@ TEST(JkrVdw, WrongInputIsNamed)
   EXPECT_NE(error("jkr/vdw 1e11 0 0.7 1e-19 4e-10" + rest).find("nu"), std::string::npos);
   EXPECT_NE(error("jkr/vdw 1e11 0 0.3 0 4e-10" + rest).find("A 0"), std::string::npos);
   EXPECT_NE(error("jkr/vdw 1e11 0 0.3 1e-19 0" + rest).find("z0 0"), std::string::npos);
+  EXPECT_NE(error("jkr/vdw/cut 1e11 0 0.3 1e-19 4e-10 4e-10" + rest).find("z_cut 4e-10"), std::string::npos);
   EXPECT_NE(error("jkr/vdw 1e11 0 0.3 1e-19 4e-10 rolling dominik/tielens 0" + rest).find("theta_crit"), std::string::npos);
   EXPECT_NE(error("hertz/material 1e11 0.5 0.3 rolling dominik/tielens 0.15" + rest).find("jkr/vdw"), std::string::npos);
   EXPECT_NE(error("jkr/vdw 1e11 0.5 0.3 1e-19 4e-10 damping coeff_restitution/limited tangential mindlin NULL 0.0 0.3"), "");
