@@ -16,6 +16,17 @@ using namespace LAMMPS_NS;
 using namespace Granular_NS;
 
 /* ----------------------------------------------------------------------
+   says that the model works with synchronized Verlet, which 4Feb2025 does not have
+------------------------------------------------------------------------- */
+
+template <typename Model> static auto allow_synchronized_verlet(Model *model, int) -> decltype(void(model->allow_synchronization))
+{
+  model->allow_synchronization = 1;
+}
+
+template <typename Model> static void allow_synchronized_verlet(Model *, long) {}
+
+/* ----------------------------------------------------------------------
    history: rolling displacement, then the normal model's neck. A displacement is even under a swap of i and j, as the
    rolling velocity is: the factor is +1 where LAMMPS' default is -1. Once a model has factors of its own, LAMMPS copies
    of each other model's history no more than its size, from the start of the storage: with the neck at the end rather
@@ -31,6 +42,7 @@ GranSubModRollingDominikTielens::GranSubModRollingDominikTielens(GranularModel *
   transfer_history_factor = new double[size_history];
   std::fill_n(transfer_history_factor, size_history, 1.0);
   contact_radius_flag = 1;
+  allow_synchronized_verlet(this, 0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -61,7 +73,7 @@ void GranSubModRollingDominikTielens::init()
 }
 
 /* ----------------------------------------------------------------------
-   normal of the full step: another one than gm->nx with synchronized Verlet, which 4Feb2025 does not have
+   normal of the full step: another one than gm->nx with synchronized Verlet
 ------------------------------------------------------------------------- */
 
 template <typename Model> static auto full_step_normal(Model *gm, int) -> decltype(&gm->nx_unrotated[0])
