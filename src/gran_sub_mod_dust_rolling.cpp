@@ -19,6 +19,17 @@ using namespace LAMMPS_NS;
 using namespace Granular_NS;
 
 /* ----------------------------------------------------------------------
+   says that the model works with synchronized Verlet, which 4Feb2025 does not have
+------------------------------------------------------------------------- */
+
+template <typename Model> static auto allow_synchronized_verlet(Model *model, int) -> decltype(void(model->allow_synchronization))
+{
+  model->allow_synchronization = 1;
+}
+
+template <typename Model> static void allow_synchronized_verlet(Model *, long) {}
+
+/* ----------------------------------------------------------------------
    The rolling displacement is even under a swap of i and j, as the rolling velocity is, but LAMMPS negates all history: so
    it is kept times the sign of the neck, which is negated with it, and in the normal model's place.
 ------------------------------------------------------------------------- */
@@ -28,6 +39,7 @@ GranSubModRollingDominikTielens::GranSubModRollingDominikTielens(GranularModel *
 {
   num_coeffs = 1;
   contact_radius_flag = 1;
+  allow_synchronized_verlet(this, 0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -57,7 +69,7 @@ void GranSubModRollingDominikTielens::init()
 }
 
 /* ----------------------------------------------------------------------
-   normal of the full step: another one than gm->nx with synchronized Verlet, which 4Feb2025 does not have
+   normal of the full step: another one than gm->nx with synchronized Verlet
 ------------------------------------------------------------------------- */
 
 template <typename Model> static auto full_step_normal(Model *gm, int) -> decltype(&gm->nx_unrotated[0])

@@ -29,13 +29,6 @@ struct Grain {
   double branch(double overlap) const { return fc * Dust::jkr_force(Dust::jkr_contact_radius(overlap / delta_c)); }
 };
 
-std::string line(const char *format, double a, double b = 0.0, double c = 0.0, double d = 0.0)
-{
-  char buf[512];
-  std::snprintf(buf, sizeof(buf), format, a, b, c, d);
-  return buf;
-}
-
 std::string model(const Grain &g, const std::string &rolling = "", double eta = 0.0)
 {
   return line("jkr/vdw 1.1053e11 %.17g 0.3 %.17g %.17g damping viscoelastic tangential mindlin NULL 0.0 0.3 ", eta, HAMAKER, g.z0) + rolling;
