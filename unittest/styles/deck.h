@@ -21,10 +21,10 @@ inline std::string contact(double restitution, double friction = 0.05)
 
 const std::string REFERENCE_DUST = "texture monolayer 20e-6 coverage 0.2 seed 1";
 
-inline std::string line(const char *format, double a, double b = 0.0, double c = 0.0, double d = 0.0)
+inline std::string line(const char *format, double a, double b = 0.0, double c = 0.0, double d = 0.0, double e = 0.0)
 {
   char buf[512];
-  std::snprintf(buf, sizeof(buf), format, a, b, c, d);
+  std::snprintf(buf, sizeof(buf), format, a, b, c, d, e);
   return buf;
 }
 

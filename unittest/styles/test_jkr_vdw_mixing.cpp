@@ -12,13 +12,6 @@ namespace {
 constexpr double RADIUS = 10e-6, Z0 = 0.4e-9;
 const std::string REST = " damping viscoelastic tangential mindlin NULL 0.0 0.3";
 
-std::string line(const char *format, double a, double b = 0.0, double c = 0.0, double d = 0.0, double e = 0.0)
-{
-  char buf[512];
-  std::snprintf(buf, sizeof(buf), format, a, b, c, d, e);
-  return buf;
-}
-
 // two grains of types 1 and 2 at a gap, that keep their velocities
 std::string two_grains(Deck &deck, double gap, const std::string &coefficients, const std::string &skin = "1e-6", double slide = 0.0)
 {
