@@ -181,6 +181,7 @@ double GranSubModNormalJKRVdW::calculate_contact_radius()
 {
   use_radius(gm->Reff);
   if (laid_out != neck_place()) lay_out_history();
+  // x of the last step, negated when i and j have changed places
   double &kept = gm->history[laid_out];
   neck = gm->delta >= 0.0 || (kept != 0.0 && gm->delta > -delta_c);
   x = neck ? Dust::jkr_contact_radius(gm->delta / delta_c, kept) : 0.0;
