@@ -1,4 +1,4 @@
-// create_dust and compute dust/carrier: real grains at rest on their carriers, and which carrier holds them.
+// create_dust and compute dust/carrier: real grains at rest on their carriers, which carrier holds them and when that changed.
 
 #include "deck.h"
 
@@ -45,6 +45,12 @@ void dusty_carriers(Deck &deck, int n, const char *more = "")
 double tied(Deck &deck)
 {
   return *static_cast<double *>(lammps_extract_compute(deck.lmp, "tied", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR));
+}
+
+// step at which contacts with carriers last changed: 0 neck, 1 slide, 2 roll
+double last_change(Deck &deck, int k)
+{
+  return static_cast<double *>(lammps_extract_compute(deck.lmp, "tied", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR))[k];
 }
 
 }    // namespace
@@ -110,6 +116,63 @@ TEST(CreateDust, ComputeKnowsWhichCarrierHoldsAGrain)
                 xp[0] + reach * (x[0] - xp[0]), xp[1] + reach * (x[1] - xp[1]), xp[2] + reach * (x[2] - xp[2]));
   deck(std::string(move) + "\nvelocity all set 0 0 0\nset group all omega 0 0 0\nrun 5 post no");
   EXPECT_EQ(tied(deck), 674.0);
+}
+
+TEST(CreateDust, GrainsInFlightStayAndLeaveTheirCarrierAlone)
+{
+  // oblique, so that coordinates round differently at each step; 100,000 steps are twice an impact
+  Deck deck;
+  dusty_carriers(deck, 1);
+  deck("velocity all set 5 3 8\nset group all omega 0 0 0\nneighbor 15e-6 bin\ncomm_modify mode single\nrun 100000 post no");
+  EXPECT_EQ(tied(deck), 225.0);
+  const double *v = deck.atom("v", 1), start[3] = {5.0, 3.0, 8.0};
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(v[d], start[d], 1e-9 * std::sqrt(98.0));
+}
+
+TEST(ComputeDustCarrier, SaysWhenContactsWithCarriersLastChanged)
+{
+  Deck deck;
+  dusty_carriers(deck, 1);
+  deck("velocity all set 0 0 0\nset group all omega 0 0 0\nrun 100 post no");
+  const auto last = [&](int k) { return last_change(deck, k); };
+  EXPECT_EQ(last(0), 1.0);    // the grains were placed in contact
+  EXPECT_EQ(last(1), -1.0);
+  EXPECT_EQ(last(2), -1.0);
+
+  const auto push = [&](int grain, bool along, double speed) {
+    const double *x = deck.atom("x", grain), *xp = deck.atom("x", 1);
+    const double n[3] = {(x[0] - xp[0]) / 0.76e-3, (x[1] - xp[1]) / 0.76e-3, (x[2] - xp[2]) / 0.76e-3};
+    const double size = std::hypot(n[0], n[1]);
+    const double v[3] = {along ? n[1] / size : n[0], along ? -n[0] / size : n[1], along ? 0.0 : n[2]};
+    deck(line("group one id %.0f\nvelocity one set %.17g %.17g %.17g\ngroup one delete", grain, speed * v[0], speed * v[1], speed * v[2]));
+  };
+  // along the surface at 2 m/s: friction is at its limit soon, the pivot gives way after 1.5 um
+  push(20, true, 2.0);
+  deck("run 300 post no");
+  EXPECT_EQ(last(0), 1.0);
+  EXPECT_GT(last(1), 100.0);
+  EXPECT_EQ(last(2), -1.0);
+  deck("run 9700 post no");    // it slides for 7 us before it rolls
+  EXPECT_EQ(last(0), 1.0);
+  EXPECT_GT(last(2), 1000.0);
+
+  // outwards: the neck breaks soon
+  push(30, false, 0.1);
+  deck("run 200 post no");
+  EXPECT_GT(last(0), 10100.0);
+  EXPECT_LT(last(0), 10200.0);
+  EXPECT_EQ(tied(deck), 224.0);
+}
+
+TEST(ComputeDustCarrier, WhatGrainsDoAmongThemselvesDoesNotCount)
+{
+  Deck deck;
+  dusty_carriers(deck, 1);
+  deck("velocity all set 0 0 0\nset group all omega 0 0 0\nset atom 40 x 0.002 y 0 z 0.003\nset atom 41 x 0.00202001 y 0 z 0.003\n"
+       "run 100 post no\nset atom 41 x 0.00201999 omega 0 0 5e4\nrun 200 post no");
+  EXPECT_EQ(last_change(deck, 0), 1.0);
+  EXPECT_EQ(last_change(deck, 1), -1.0);
+  EXPECT_NE(deck.atom("omega", 40)[2], 0.0);    // they did touch
 }
 
 TEST(CreateDust, SortingAtomsChangesNothing)

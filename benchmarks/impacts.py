@@ -1,0 +1,452 @@
+"""Both methods on the cases of impacts/*.toml: runs them, keeps the tables, compares and draws.
+
+    . build/environment
+    build/venv/bin/python benchmarks/impacts.py run --work DIR [--jobs N] [NAME ...]    hours; goes on where it stopped
+    build/venv/bin/python benchmarks/impacts.py compare                                 seconds, from the tables in impacts/
+
+`run` copies the table of each NAME.toml (all by default) to impacts/NAME.csv, with machine and versions in
+impacts/machine.json. `compare` writes impacts/comparison.md and the figures beside it.
+"""
+
+import argparse
+import json
+import os
+import platform
+import shutil
+import subprocess
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import dustdetach
+import matplotlib.pyplot as plt
+from dustdetach.cases import read_cases, with_methods
+from dustdetach.figures import draw
+from dustdetach.impact import PARAMETERS
+from dustdetach.result import Result, read_csv
+
+HERE = Path(__file__).resolve().parent / "impacts"
+# where a table's cases have their partners: a case and its variant differ in this parameter alone
+VARIANTS = {"seeds": "seed", "timestep": "timestep"}
+DAMPINGS = (1.0, 0.2, 0.06)
+
+Pair = tuple[Result, Result]
+
+
+# --- running ---------------------------------------------------------------------------------------------
+def run(names: list[str], work: Path, jobs: int) -> None:
+    machine = {
+        "processor": processor(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        "dustdetach": dustdetach.__version__,
+        "commit": subprocess.run(
+            ["git", "describe", "--always", "--dirty"],
+            cwd=HERE,
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.strip(),
+        "jobs": jobs,
+    }
+    for name in names:
+        cases = with_methods(read_cases(HERE / f"{name}.toml"), "both")
+        dustdetach.sweep(
+            cases,
+            work / name,
+            jobs=jobs,
+            progress=lambda *at, name=name: report(name, *at),
+        )
+        shutil.copy(work / name / "results.csv", HERE / f"{name}.csv")
+        (HERE / "machine.json").write_text(json.dumps(machine, indent=1) + "\n")
+
+
+def report(name: str, done: int, total: int, left: float) -> None:
+    print(f"{name}: {done}/{total} cases, {left:.0f} s left", flush=True)
+
+
+def processor() -> str:
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text().splitlines() if info.exists() else []
+    return next(
+        (line.split(":")[1].strip() for line in lines if line.startswith("model name")),
+        platform.processor(),
+    )
+
+
+# --- reading ---------------------------------------------------------------------------------------------
+def tables() -> dict[str, list[Result]]:
+    return {
+        path.stem: read_csv(path)
+        for path in sorted(HERE.glob("*.csv"))
+        if path.with_suffix(".toml").exists()
+    }
+
+
+def key(row: Result, *without: str) -> tuple:
+    return tuple(
+        getattr(row, name) for name in PARAMETERS if name not in ("method", *without)
+    )
+
+
+def pairs(rows: Iterable[Result]) -> list[Pair]:
+    """Functions and resolved run of the same impact."""
+    functions = {key(row): row for row in rows if row.method == "functions"}
+    return [
+        (functions[key(row)], row)
+        for row in rows
+        if row.method == "resolved" and key(row) in functions
+    ]
+
+
+def unique(rows: Iterable[Result]) -> list[Result]:
+    """Cases that stand in several tables count once."""
+    return list({(row.method, key(row)): row for row in rows}.values())
+
+
+# --- the text --------------------------------------------------------------------------------------------
+def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[str]:
+    head = list(head)
+    yield "| " + " | ".join(head) + " |"
+    yield "|" + "---|" * len(head)
+    for row in rows:
+        yield (
+            "| "
+            + " | ".join(
+                f"{cell:.4f}" if isinstance(cell, float) else str(cell) for cell in row
+            )
+            + " |"
+        )
+    yield ""
+
+
+def agreement(label: str, compared: list[Pair]) -> list[object]:
+    """Mean and largest difference, whole, south, north; the case of the largest."""
+    row: list[object] = [label, len(compared)]
+    for share in ("dispersion_ratio", "south", "north"):
+        differences = [abs(getattr(f, share) - getattr(r, share)) for f, r in compared]
+        row += [sum(differences) / len(differences), max(differences)]
+    worst = max(
+        compared,
+        key=lambda pair: abs(pair[0].dispersion_ratio - pair[1].dispersion_ratio),
+    )[1]
+    return [*row, f"{worst.speed:g} m/s, {worst.angle:g}°, e {worst.restitution:g}"]
+
+
+def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
+    rows = unique(row for part in data.values() for row in part)
+    plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
+    smooth = [row for row in plain if row.wall_friction == 0.05]
+
+    yield "# Detachment functions against grain-resolved runs"
+    yield ""
+    resolved = [row for row in rows if row.method == "resolved"]
+    ends = {
+        end: sum(row.end == end for row in resolved)
+        for end in sorted({row.end for row in resolved})
+    }
+    yield f"{len(resolved)} resolved impacts of {resolved[0].grains} grains, LAMMPS {resolved[0].lammps_version}; ended by "
+    yield (
+        ", ".join(f"*{end}*: {count}" for end, count in ends.items())
+        + ". Written by `impacts.py compare`."
+    )
+    yield ""
+
+    yield "## Agreement"
+    yield ""
+    yield "Differences of the fraction of the initial dust mass, tangential lift-off by `estimate`, same inputs on both sides."
+    yield ""
+    head = [
+        "impacts",
+        "cases",
+        "ratio: mean",
+        "largest",
+        "south: mean",
+        "largest",
+        "north: mean",
+        "largest",
+        "largest at",
+    ]
+    lines = []
+    for damping in DAMPINGS:
+        damped = pairs(row for row in smooth if row.grain_damping == damping)
+        straight = [pair for pair in damped if pair[0].angle == 90]
+        oblique = [pair for pair in damped if pair[0].angle != 90]
+        lines.append(agreement(f"straight, zeta {damping:g}", straight))
+        if oblique:
+            lines.append(agreement(f"oblique, zeta {damping:g}", oblique))
+    both = {
+        key(pair[0], "grain_damping")
+        for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])
+    }
+    same = [
+        pair
+        for pair in pairs(smooth)
+        if pair[0].grain_damping == 1 and key(pair[0], "grain_damping") in both
+    ]
+    lines.append(agreement("zeta 1, cases of the weaker dampings alone", same))
+    rough = pairs(row for row in plain if row.wall_friction == 0.3)
+    lines.append(agreement("wall friction 0.3", rough))
+    yield from table(head, lines)
+
+    yield "## Straight impacts, zeta 1"
+    yield ""
+    yield from cases(
+        [
+            pair
+            for pair in pairs(smooth)
+            if pair[0].angle == 90 and pair[0].grain_damping == 1
+        ]
+    )
+    yield "## Oblique impacts, zeta 1"
+    yield ""
+    yield from cases(
+        [
+            pair
+            for pair in pairs(smooth)
+            if pair[0].angle != 90 and pair[0].grain_damping == 1
+        ]
+    )
+    yield "## Grain contacts that ring"
+    yield ""
+    yield from dampings(smooth)
+    yield "## Rough wall, friction 0.3"
+    yield ""
+    yield from cases(rough)
+    yield from best_angle(rough)
+    for name, parameter in VARIANTS.items():
+        yield f"## {name.capitalize()}"
+        yield ""
+        yield from variants(
+            [row for row in rows if row.method == "resolved"], plain, parameter
+        )
+
+
+def cases(compared: list[Pair]) -> Iterator[str]:
+    head = [
+        "e",
+        "angle",
+        "v (m/s)",
+        "functions",
+        "resolved",
+        "south f",
+        "south r",
+        "north f",
+        "north r",
+        "end",
+        "s",
+    ]
+    compared = sorted(
+        compared, key=lambda pair: (pair[0].restitution, -pair[0].angle, pair[0].speed)
+    )
+    yield from table(
+        head,
+        (
+            [
+                f"{f.restitution:g}",
+                f"{f.angle:g}",
+                f"{f.speed:g}",
+                f.dispersion_ratio,
+                r.dispersion_ratio,
+            ]
+            + [f.south, r.south, f.north, r.north, r.end, f"{r.wall_seconds:.0f}"]
+            for f, r in compared
+        ),
+    )
+
+
+def dampings(smooth: list[Result]) -> Iterator[str]:
+    by_case = defaultdict(dict)
+    for row in smooth:
+        if row.method == "resolved":
+            by_case[key(row, "grain_damping")][row.grain_damping] = row
+    functions = {
+        key(row, "grain_damping"): row for row in smooth if row.method == "functions"
+    }
+    lines = [
+        [
+            f"{found[1.0].restitution:g}",
+            f"{found[1.0].angle:g}",
+            f"{found[1.0].speed:g}",
+            functions[case].dispersion_ratio,
+        ]
+        + [found[damping].dispersion_ratio for damping in DAMPINGS]
+        for case, found in sorted(
+            by_case.items(), key=lambda item: (item[0][2], -item[0][1], item[0][0])
+        )
+        if all(damping in found for damping in DAMPINGS)
+    ]
+    yield from table(
+        [
+            "e",
+            "angle",
+            "v (m/s)",
+            "functions",
+            *(f"zeta {damping:g}" for damping in DAMPINGS),
+        ],
+        lines,
+    )
+
+
+def best_angle(rough: list[Pair]) -> Iterator[str]:
+    yield "Angle of largest release:"
+    yield ""
+    lines = []
+    for speed in sorted({f.speed for f, _ in rough}):
+        at = [pair for pair in rough if pair[0].speed == speed]
+        best = [
+            max(at, key=lambda pair, k=k: pair[k].dispersion_ratio)[k] for k in (0, 1)
+        ]
+        lines.append(
+            [
+                f"{speed:g}",
+                *(f"{row.angle:g}° ({row.dispersion_ratio:.4f})" for row in best),
+            ]
+        )
+    yield from table(["v (m/s)", "functions", "resolved"], lines)
+
+
+def variants(
+    resolved: list[Result], plain: list[Result], parameter: str
+) -> Iterator[str]:
+    base = {key(row, parameter): row for row in plain if row.method == "resolved"}
+    lines = []
+    for row in resolved:
+        partner = base.get(key(row, parameter))
+        if partner and getattr(row, parameter) != getattr(partner, parameter):
+            difference = row.dispersion_ratio - partner.dispersion_ratio
+            where = [
+                f"{row.restitution:g}",
+                f"{row.speed:g}",
+                f"{getattr(row, parameter):g}",
+            ]
+            lines.append(
+                [*where, partner.dispersion_ratio, row.dispersion_ratio, difference]
+            )
+    lines.sort(key=lambda line: [float(cell) for cell in line[:3]])
+    head = [
+        "e",
+        "v (m/s)",
+        parameter,
+        f"ratio at {getattr(plain[0], parameter):g}",
+        "ratio",
+        "difference",
+    ]
+    yield from table(head, lines)
+    if lines:
+        yield f"Largest difference: {max(abs(line[-1]) for line in lines):.4f}."
+        yield ""
+
+
+# --- the figures -----------------------------------------------------------------------------------------
+def figures(data: dict[str, list[Result]]) -> None:
+    rows = unique(row for part in data.values() for row in part)
+    plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
+    damped = [row for row in plain if row.grain_damping == 1]
+    smooth = [row for row in damped if row.wall_friction == 0.05]
+
+    def with_curves(
+        chosen: list[Result], belongs: Callable[[Result], bool], name: str
+    ) -> None:
+        draw([row for row in chosen if belongs(row)], HERE / name)
+
+    with_curves(smooth, lambda row: row.angle == 90, "figure4")
+    with_curves(smooth, lambda row: row.restitution == 0.7, "figure5")
+    with_curves(damped, lambda row: row.wall_friction == 0.3, "friction")
+    scatter(pairs(smooth))
+    ringing(
+        [
+            row
+            for row in plain
+            if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7
+        ]
+    )
+
+
+def scatter(compared: list[Pair]) -> None:
+    figure, axes = plt.subplots(figsize=(4.2, 4.0), layout="constrained")
+    axes.plot([0, 1], [0, 1], color="0.7", linewidth=0.8)
+    for label, colour, chosen in (
+        ("straight", "#0072B2", [pair for pair in compared if pair[0].angle == 90]),
+        ("oblique", "#D55E00", [pair for pair in compared if pair[0].angle != 90]),
+    ):
+        x, y = zip(
+            *((f.dispersion_ratio, r.dispersion_ratio) for f, r in chosen), strict=True
+        )
+        axes.plot(x, y, "o", color=colour, markerfacecolor="white", label=label)
+    axes.set(
+        xlabel="Dispersion ratio, detachment functions",
+        ylabel="Dispersion ratio, dust-resolved",
+        aspect="equal",
+    )
+    axes.legend(frameon=False)
+    save(figure, "agreement")
+
+
+def ringing(rows: list[Result]) -> None:
+    figure, axes = plt.subplots(figsize=(5.0, 3.6), layout="constrained")
+    functions = sorted(
+        (row.speed, row.dispersion_ratio)
+        for row in rows
+        if row.method == "functions" and row.grain_damping == 1
+    )
+    axes.plot(*zip(*functions, strict=True), color="0.3", label="functions")
+    for damping, colour, marker in zip(
+        DAMPINGS, ("#0072B2", "#D55E00", "#009E73"), "os^", strict=True
+    ):
+        found = sorted(
+            (row.speed, row.dispersion_ratio)
+            for row in rows
+            if row.method == "resolved" and row.grain_damping == damping
+        )
+        label = f"resolved, $\\zeta$ = {damping:g}"
+        axes.plot(
+            *zip(*found, strict=True),
+            marker,
+            color=colour,
+            markerfacecolor="white",
+            label=label,
+        )
+    axes.set(
+        xlabel="Impact speed $v_p$ (m/s)",
+        ylabel="Dispersion ratio",
+        ylim=(0, 1.03),
+        xlim=(0, None),
+    )
+    axes.legend(frameon=False)
+    save(figure, "damping")
+
+
+def save(figure: plt.Figure, name: str) -> None:
+    figure.savefig(HERE / f"{name}.png", dpi=150)
+    plt.close(figure)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    commands = parser.add_subparsers(required=True, dest="command")
+    running = commands.add_parser("run")
+    running.add_argument("names", nargs="*", metavar="NAME")
+    running.add_argument(
+        "--work", type=Path, required=True, help="folder of the sweeps"
+    )
+    running.add_argument("--jobs", type=int, default=2)
+    commands.add_parser("compare")
+    options = parser.parse_args()
+    if options.command == "run":
+        known = sorted(path.stem for path in HERE.glob("*.toml"))
+        if unknown := [name for name in options.names if name not in known]:
+            parser.error(
+                f"{unknown[0]}: no such list of cases; allowed: {', '.join(known)}"
+            )
+        run(options.names or known, options.work, options.jobs)
+    else:
+        data = tables()
+        (HERE / "comparison.md").write_text("\n".join(comparison(data)))
+        figures(data)
+
+
+if __name__ == "__main__":
+    main()
