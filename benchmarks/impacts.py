@@ -9,6 +9,7 @@ impacts/machine.json. `compare` writes impacts/comparison.md and the figures bes
 """
 
 import argparse
+import csv
 import json
 import os
 import platform
@@ -18,6 +19,7 @@ import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import dustdetach
@@ -216,6 +218,11 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     lines.append(agreement("wall friction 0.3", rough))
     yield from table(head, lines)
 
+    yield "## What the paper says"
+    yield ""
+    yield from paper(
+        [row for row in smooth if row.method == "resolved" and row.grain_damping == 1]
+    )
     yield "## Straight impacts, zeta 1"
     yield ""
     yield from cases(
@@ -241,12 +248,78 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     yield ""
     yield from cases(rough)
     yield from best_angle(rough)
+    yield "## Other influences"
+    yield ""
+    yield "Straight, e 0.7; from `influences.py`. *Tensile tail*: LAMMPS' own `coeff_restitution` on the carrier, which pulls."
+    yield ""
+    with (HERE / "influences.csv").open() as stream:
+        head, *lines = csv.reader(stream)
+    yield from table(head, lines)
     for name, parameter in VARIANTS.items():
         yield f"## {name.capitalize()}"
         yield ""
         yield from variants(
             [row for row in rows if row.method == "resolved"], plain, parameter
         )
+
+
+def paper(resolved: list[Result]) -> Iterator[str]:
+    """The numbers and trends of the paper's text with the limits of physics.md, section 5, in the resolved runs."""
+    rows = {(row.restitution, row.angle, row.speed): row for row in resolved}
+
+    def shares(share: str, cases: Iterable[tuple[float, float, float]]) -> list[float]:
+        return [getattr(rows[case], share) for case in cases]
+
+    def falling(values: list[float]) -> bool:
+        return all(a > b for a, b in pairwise(values))
+
+    lines: list[list[object]] = []
+
+    def check(what: str, wanted: str, found: list[float], holds: bool) -> None:
+        lines.append(
+            [
+                what,
+                wanted,
+                " / ".join(f"{value:.4f}" for value in found),
+                "yes" if holds else "**no**",
+            ]
+        )
+
+    for speed, least in ((2, 0.43), (4, 0.46)):
+        found = shares("south", [(0.7, 90, speed)])
+        check(f"south, {speed} m/s, e 0.7", f">= {least}", found, found[0] >= least)
+    found = shares("south", [(e, 90, 4) for e in (0.5, 0.7, 0.9)])
+    check(
+        "south, 4 m/s, e 0.5 / 0.7 / 0.9",
+        "within 0.01",
+        found,
+        max(found) - min(found) <= 0.01,
+    )
+    found = shares("north", [(0.7, 90, 5)])
+    check("north, 5 m/s, e 0.7", "0", found, found[0] == 0)
+    found = shares("north", [(0.7, 90, 8)])
+    check("north, 8 m/s, e 0.7", "> 0.2", found, found[0] > 0.2)
+    for speed in (8, 9, 10, 12):
+        found = shares("north", [(e, 90, speed) for e in (0.5, 0.7, 0.9)])
+        check(
+            f"north, {speed} m/s, e 0.5 / 0.7 / 0.9",
+            "rising",
+            found,
+            falling(found[::-1]),
+        )
+    for speed in (4, 8, 12):
+        found = shares(
+            "dispersion_ratio", [(0.7, angle, speed) for angle in (90, 75, 60, 45, 30)]
+        )
+        check(
+            f"ratio, {speed} m/s, 90 / 75 / 60 / 45 / 30°",
+            "falling",
+            found,
+            falling(found),
+        )
+    found = shares("north", [(0.7, 60, 12)])
+    check("north, 12 m/s, 60°", ">= 0.05", found, found[0] >= 0.05)
+    yield from table(["quantity", "wanted", "found", "holds"], lines)
 
 
 def cases(compared: list[Pair]) -> Iterator[str]:
