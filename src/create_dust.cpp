@@ -40,7 +40,7 @@ void CreateDust::command(int narg, char **arg)
   for (int iarg = 3; iarg < narg;) {
     const int next = options.parse(iarg, narg, arg);
     if (next == iarg)
-      error->all(FLERR, "Unknown create_dust keyword {}: use texture, bare, density, hamaker, surface, elastic, orientation or "
+      error->all(FLERR, "Unknown create_dust keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, orientation or "
                  "write", arg[iarg]);
     iarg = next;
   }

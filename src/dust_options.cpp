@@ -29,7 +29,7 @@ static constexpr double UNSET = -1.0;
 
 DustOptions::DustOptions(LAMMPS *lmp, const std::string &command) :
     Pointers(lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, command(command),
-    diameter(0.0), coverage(UNSET), seed(0), bare_given(false)
+    diameter(0.0), coverage(UNSET), distributed(false), sizes{}, seed(0), bare_given(false)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, "{} needs atoms with radius and mass of their own, such as atom_style sphere", command);
@@ -127,7 +127,20 @@ int DustOptions::parse(int iarg, int narg, char **arg)
     only(iarg, arg, "same");
     return iarg + 2;
   }
-  if (key == "distribution") error->all(FLERR, "{} distribution is not available yet", command);
+  if (key == "distribution") {
+    need(iarg, 3, narg, arg);
+    if (distributed) error->all(FLERR, "{} distribution is given twice", command);
+    const std::string kind = arg[iarg + 1];
+    if (kind != "lognormal" && kind != "rrsb")
+      error->all(FLERR, "{} distribution {} must be lognormal or rrsb", command, kind);
+    sizes.kind = kind == "rrsb" ? Dust::SizeDistribution::RRSB : Dust::SizeDistribution::LOGNORMAL;
+    sizes.x50 = positive(iarg, 2, arg);
+    sizes.spread = number(iarg, 3, arg);
+    const bool lognormal = kind == "lognormal";
+    check(iarg, 3, arg, sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread), lognormal ? "above 1" : "above 0");
+    distributed = true;
+    return iarg + 4;
+  }
   return iarg;
 }
 
@@ -205,6 +218,9 @@ void DustOptions::complete()
   if (!file.empty() && bare_given)
     error->all(FLERR, "{} bare goes with texture monolayer: a texture file has its own bare cap", command);
 
+  if (!file.empty() && distributed)
+    error->all(FLERR, "{} distribution goes with texture monolayer: a texture file has its own diameters", command);
+
   const bool si = strcmp(update->unit_style, "si") == 0;
   const auto absent = [&](double value, const char *key) {
     if (value == UNSET && !si)
@@ -261,8 +277,9 @@ Dust::Texture DustOptions::texture(double radius) const
 {
   Dust::Texture made;
   try {
-    if (file.empty()) made = Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
-    else made = from_file;
+    if (!file.empty()) made = from_file;
+    else if (distributed) made = Dust::place_monolayer(radius, sizes, coverage, bare, seed);
+    else made = Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
   } catch (Dust::TextureError &e) {
     error->all(FLERR, "{} texture: {}", command, e.what());
   }

@@ -46,6 +46,8 @@ class DustOptions : protected Pointers {
   std::string file, write;
   Dust::Texture from_file;
   double diameter, coverage;
+  bool distributed;    // sizes instead of diameter
+  Dust::SizeDistribution sizes;
   int seed;
   Dust::BareCap bare;
   bool bare_given;

@@ -84,8 +84,8 @@ void FixDustDetach::parse(int narg, char **arg)
     if (key == "stiffen") error->all(FLERR, "Fix dust/detach stiffen is not available yet");
     if (key != "friction" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" && key != "rotation" &&
         key != "mass" && key != "emit")
-      error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, density, hamaker, surface, elastic, friction, "
-                 "tangential, criteria, every, rows, write, rotation, orientation, mass or emit", key);
+      error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
+                 "friction, tangential, criteria, every, rows, write, rotation, orientation, mass or emit", key);
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dustdetach import Impact, InvalidInput
-from dustdetach.texture import check_texture, find_overlap, make_texture, read_texture
+from dustdetach.texture import Distribution, check_texture, find_overlap, make_texture, read_texture
 
 
 @pytest.fixture(scope="module")
@@ -133,3 +133,24 @@ def test_the_command_makes_and_checks(command, tmp_path):
     checked = command("texture", "check", "t.txt")
     assert checked.returncode == 0
     assert "2250 grains, coverage 0.100000, bare cap 0.33 rad" in checked.stdout
+
+
+def test_distributed_sizes(tmp_path):
+    path = tmp_path / "texture.txt"
+    make_texture(Impact(speed=1.0, coverage=0.05), path, Distribution("rrsb", 15e-6, 3.0))
+    texture = read_texture(path)
+    check_texture(texture)
+    assert 0.05 <= texture.coverage < 0.0502
+    volumes = np.sort(texture.diameters) ** 3
+    median = np.sort(texture.diameters)[np.searchsorted(np.cumsum(volumes), volumes.sum() / 2)]
+    # 3000 grains: a few per cent of scatter of a quantile
+    assert median == pytest.approx(15e-6, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [(("weibull", 15e-6, 2.0), "weibull"), (("lognormal", 0.0, 2.0), "median"), (("lognormal", 1e-5, 1.0), "spread")],
+)
+def test_wrong_distributions_are_named(words, named):
+    with pytest.raises(InvalidInput, match=named):
+        Distribution(*words)

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <istream>
 #include <ostream>
 #include <random>
@@ -20,7 +21,9 @@ using namespace Dust;
 
 namespace {
 
-constexpr double MIN_GAP = 1.0e-3;    // between two grains, of their diameter
+constexpr double MIN_GAP = 1.0e-3;        // between two grains, of the sum of their radii
+constexpr double CUT = 0.01;              // of a size distribution, at either end, by volume
+constexpr double MOST_GRAINS = 1.0e8;
 
 // squared chord between two unit vectors: exact where the dot product would round small distances away
 double chord2(const double *a, const double *b)
@@ -101,59 +104,87 @@ class ShellGrid {
 };
 
 /* ----------------------------------------------------------------------
-   random sequential placement of points on the unit sphere above a height, no two closer than a chord
+   random sequential placement of grains on the part of a carrier above a height, from large to small
 ------------------------------------------------------------------------- */
 
 class Placement {
  public:
-  Placement(double lowest_z, double min_chord, uint64_t seed) :
-      zlo(lowest_z), chord2_min(min_chord * min_chord), reach(2.0 * std::asin(std::min(1.0, 0.5 * min_chord))),
-      grid(reach), random(seed)
+  Placement(double lowest_z, double carrier_radius, double largest, double smallest, std::mt19937_64 &random) :
+      zlo(lowest_z), carrier(carrier_radius), least(smallest), size(largest), cells_for(largest), tries(0), grid(reach()),
+      random(random)
   {
   }
 
-  // places up to n points and returns how many there was room for
-  int place(int n)
+  // places one grain, no larger than the last one; false if there is no room for it
+  bool place(double radius)
   {
-    // as long as most of the sphere is free, tries anywhere are cheapest
-    for (int misses = 0; misses < 2000 && count() < n;) misses = try_cell({zlo, 1.0, 0.0, 2.0 * PI}) ? 0 : misses + 1;
-    if (count() == n) return n;
-
-    std::vector<Cell> cells = {{zlo, 1.0, 0.0, 2.0 * PI}};
-    while (count() < n) {
-      if (!refine(cells)) break;
-      for (size_t tries = cells.size(); tries > 0 && count() < n; tries--)
-        try_cell(cells[static_cast<size_t>(uniform() * cells.size())]);
+    size = radius;
+    if (radius < cells_for) cells.clear();    // smaller ones have room where larger ones have none
+    const Cell everywhere = {zlo, 1.0, 0.0, 2.0 * PI};
+    if (cells.empty()) {
+      // as long as most of the sphere is free, tries anywhere are cheapest
+      for (int misses = 0; misses < 2000; misses++)
+        if (try_cell(everywhere)) return true;
+      cells = {everywhere};
+      cells_for = std::max(0.9 * size, least);    // so that they serve the next grains, too
+      tries = 0;
     }
-    return count();
+    while (true) {
+      for (; tries > 0; tries--)
+        if (try_cell(cells[static_cast<size_t>(uniform(random) * cells.size())])) {
+          tries--;
+          return true;
+        }
+      if (cells_for < size && cells[0].phi1 - cells[0].phi0 < 0.05 * reach()) {    // room for smaller grains alone
+        cells = {everywhere};
+        cells_for = size;
+      }
+      if (!refine()) return false;
+      tries = cells.size();
+    }
   }
 
-  std::vector<double> points;    // x y z of each
+  std::vector<Grain> grains;
+
+  static double uniform(std::mt19937_64 &random)    // the standard's own distributions differ by library
+  {
+    return (random() >> 11) * 0x1.0p-53;
+  }
 
  private:
   struct Cell {    // all cells in a list have the same area, as area is dz dphi
     double z0, z1, phi0, phi1;
   };
 
-  double zlo, chord2_min, reach;
+  double zlo, carrier, least, size;
+  std::vector<Cell> cells;    // where there may be room for a grain of a size; empty as long as nearly anywhere
+  double cells_for;           // that size, at most the next grain's
+  size_t tries;               // in these cells, until the next refinement
   ShellGrid grid;
-  std::mt19937_64 random;
+  std::mt19937_64 &random;
 
-  int count() const { return static_cast<int>(points.size() / 3); }
-  double uniform() { return (random() >> 11) * 0x1.0p-53; }    // the standard's own distributions differ by library
+  // squared chord that keeps a grain's direction off another's, from the triangle of both centres and the carrier's
+  double least_chord2(double a, double b) const
+  {
+    const double touch = (a + b) * (1.0 + MIN_GAP), step = a - b;
+    return (touch * touch - step * step) / ((carrier + a) * (carrier + b));
+  }
+  double reach() const { return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(least_chord2(size, size)))); }
 
   bool try_cell(const Cell &cell)
   {
-    double n[3];
-    const double z = cell.z0 + uniform() * (cell.z1 - cell.z0);
-    point_at(z, cell.phi0 + uniform() * (cell.phi1 - cell.phi0), n);
-    if (grid.any_near(n, [&](int id) { return chord2(n, &points[3 * id]) < chord2_min; })) return false;
-    grid.insert(count(), n);
-    points.insert(points.end(), n, n + 3);
+    Grain grain;
+    grain.radius = size;
+    const double z = cell.z0 + uniform(random) * (cell.z1 - cell.z0);
+    point_at(z, cell.phi0 + uniform(random) * (cell.phi1 - cell.phi0), grain.n);
+    if (grid.any_near(grain.n, [&](int id) { return chord2(grain.n, grains[id].n) < least_chord2(size, grains[id].radius); }))
+      return false;
+    grid.insert(static_cast<int>(grains.size()), grain.n);
+    grains.push_back(grain);
     return true;
   }
 
-  // true if one point excludes the whole cell: the cell's farthest points are corners once it is narrower than pi/2
+  // true if one grain excludes the whole cell: the cell's farthest points are corners once it is narrower than pi/2
   bool covered(const Cell &cell) const
   {
     if (cell.phi1 - cell.phi0 > 0.5 * PI) return false;
@@ -165,15 +196,16 @@ class Placement {
     point_at(cell.z1, cell.phi1, corner[3]);
     double radius = 0.0;
     for (auto &c : corner) radius = std::max(radius, std::sqrt(chord2(middle, c)));
-    const double limit = std::sqrt(chord2_min) - radius;    // chords obey the triangle inequality
-    return limit > 0.0 &&
-        grid.any_near(middle, [&](int id) { return chord2(middle, &points[3 * id]) < limit * limit; });
+    return grid.any_near(middle, [&](int id) {
+      const double limit = std::sqrt(least_chord2(cells_for, grains[id].radius)) - radius;    // chords obey the triangle inequality
+      return limit > 0.0 && chord2(middle, grains[id].n) < limit * limit;
+    });
   }
 
-  // quarters the cells until most are smaller than a point's surroundings, and drops those without room
-  bool refine(std::vector<Cell> &cells)
+  // quarters the cells until most are smaller than a grain's surroundings, and drops those without room
+  bool refine()
   {
-    const double wide = 0.5 * reach;
+    const double wide = 0.5 * reach();
     do {
       if ((cells.empty()) || (cells[0].z1 - cells[0].z0 < 1.0e-12)) return false;
       std::vector<Cell> finer;
@@ -230,6 +262,11 @@ void check_sizes(double carrier_radius, double grain_radius, const BareCap &bare
     fail("bare half-angle " + text(bare.half_angle) + " is not between 0 and pi");
 }
 
+void check_coverage(double coverage)
+{
+  if (!(coverage > 0.0 && std::isfinite(coverage))) fail("coverage " + text(coverage) + " is not above 0");
+}
+
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
@@ -242,32 +279,91 @@ double Dust::grains_for_coverage(double coverage, double carrier_radius, double 
 
 /* ---------------------------------------------------------------------- */
 
+double SizeDistribution::quantile(double fraction) const
+{
+  if (kind == RRSB) return x50 * std::pow(-std::log1p(-fraction) / std::log(2.0), 1.0 / spread);
+  // where the error function says so, by bisection: the fraction lies within 3 standard deviations
+  double low = -3.0, high = 3.0;
+  while (high - low > 1.0e-15) {
+    const double middle = 0.5 * (low + high);
+    if (middle == low || middle == high) break;
+    (0.5 * std::erfc(-middle / std::sqrt(2.0)) < fraction ? low : high) = middle;
+  }
+  return x50 * std::exp(high * std::log(spread));
+}
+
+/* ----------------------------------------------------------------------
+   by volume between the cuts, taken with the probability (finest/x)^3: by number
+------------------------------------------------------------------------- */
+
+static std::vector<double> draw_radii(const SizeDistribution &sizes, double sum_of_squares, std::mt19937_64 &random)
+{
+  const double finest = sizes.quantile(CUT), coarsest = sizes.quantile(1.0 - CUT);
+  std::vector<double> radii;
+  for (double sum = 0.0; sum < sum_of_squares;) {
+    double x;
+    if (sizes.kind == SizeDistribution::RRSB) {
+      x = sizes.quantile(CUT + (1.0 - 2.0 * CUT) * Placement::uniform(random));
+    } else {    // Box and Muller
+      const double r = std::sqrt(-2.0 * std::log1p(-Placement::uniform(random)));
+      x = sizes.x50 * std::pow(sizes.spread, r * std::cos(2.0 * PI * Placement::uniform(random)));
+      if (x < finest || x > coarsest) continue;
+    }
+    if (Placement::uniform(random) > std::pow(finest / x, 3)) continue;
+    radii.push_back(0.5 * x);
+    sum += 0.25 * x * x;
+    if (radii.size() > MOST_GRAINS) fail("coverage with these grain sizes is more than 1e8 grains");
+  }
+  std::sort(radii.begin(), radii.end(), std::greater<double>());
+  return radii;
+}
+
+/* ---------------------------------------------------------------------- */
+
+static Texture place(double carrier_radius, const std::vector<double> &radii, double coverage, const BareCap &bare,
+                     std::mt19937_64 &random)
+{
+  Placement placement(-std::cos(bare.half_angle), carrier_radius, radii.front(), radii.back(), random);
+  double sum = 0.0;
+  for (const double radius : radii) {
+    if (!placement.place(radius))
+      fail("coverage " + text(coverage) + " cannot be placed: the monolayer is full at " +
+           text(0.25 * sum / (carrier_radius * carrier_radius)) + " (" + std::to_string(placement.grains.size()) + " of " +
+           std::to_string(radii.size()) + " grains)");
+    sum += radius * radius;
+  }
+  for (Grain &grain : placement.grains) turn_from_south(bare.axis, grain.n);
+  return {carrier_radius, bare, placement.grains};
+}
+
+/* ---------------------------------------------------------------------- */
+
 Texture Dust::place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare,
                               uint64_t seed)
 {
   check_sizes(carrier_radius, grain_radius, bare);
-  if (!(coverage > 0.0 && std::isfinite(coverage))) fail("coverage " + text(coverage) + " is not above 0");
+  check_coverage(coverage);
   const double wanted = grains_for_coverage(coverage, carrier_radius, grain_radius);
   if (wanted < 1.0) fail("coverage " + text(coverage) + " is less than one grain");
-  if (wanted > 1.0e8) fail("coverage " + text(coverage) + " with this grain diameter is more than 1e8 grains");
+  if (wanted > MOST_GRAINS) fail("coverage " + text(coverage) + " with this grain diameter is more than 1e8 grains");
+  std::mt19937_64 random(seed);
+  return place(carrier_radius, std::vector<double>(static_cast<size_t>(wanted), grain_radius), coverage, bare, random);
+}
 
-  const double shell = carrier_radius + grain_radius;
-  Placement placement(-std::cos(bare.half_angle), 2.0 * grain_radius * (1.0 + MIN_GAP) / shell, seed);
-  const int n = static_cast<int>(wanted);
-  const int placed = placement.place(n);
-  if (placed < n)
-    fail("coverage " + text(coverage) + " cannot be placed: the monolayer is full at " +
-         text(coverage * placed / n) + " (" + std::to_string(placed) + " of " + std::to_string(n) + " grains)");
+/* ---------------------------------------------------------------------- */
 
-  Texture texture = {carrier_radius, bare, {}};
-  texture.grains.resize(n);
-  for (int i = 0; i < n; i++) {
-    Grain &grain = texture.grains[i];
-    std::copy_n(&placement.points[3 * i], 3, grain.n);
-    turn_from_south(bare.axis, grain.n);
-    grain.radius = grain_radius;
-  }
-  return texture;
+Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &sizes, double coverage, const BareCap &bare,
+                              uint64_t seed)
+{
+  if (!(sizes.x50 > 0.0 && std::isfinite(sizes.x50))) fail("median diameter " + text(sizes.x50) + " is not above 0");
+  const bool lognormal = sizes.kind == SizeDistribution::LOGNORMAL;
+  if (!(sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread)))
+    fail(lognormal ? "geometric standard deviation " + text(sizes.spread) + " is not above 1"
+                   : "exponent " + text(sizes.spread) + " is not above 0");
+  check_sizes(carrier_radius, 0.5 * sizes.quantile(1.0 - CUT), bare);
+  check_coverage(coverage);
+  std::mt19937_64 random(seed);
+  return place(carrier_radius, draw_radii(sizes, 4.0 * coverage * carrier_radius * carrier_radius, random), coverage, bare, random);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -37,6 +37,20 @@ struct Texture {
   std::vector<Grain> grains;
 };
 
+/*! Sizes of grains by volume, as sieves and laser diffraction give them. Both kinds are cut at the volume fractions 0.01
+ *  and 0.99, since by number their densities, q0 ~ q3/x^3, grow or even diverge towards fine grains. */
+struct SizeDistribution {
+  enum Kind {
+    LOGNORMAL,    //!< spread = geometric standard deviation, above 1
+    RRSB          //!< Rosin-Rammler-Sperling-Bennett, 1 - exp(-(x/x')^n) with x' = x50/(ln 2)^(1/n): spread = n, above 0
+  } kind;
+  double x50;       //!< median diameter by volume, x_50,3 (length)
+  double spread;
+
+  /*! Diameter below which this fraction of the volume would be without the cut; fraction between 0.01 and 0.99 */
+  double quantile(double fraction) const;
+};
+
 /*! Number of equal grains with the coverage X0 = sum of grain cross-sections / carrier surface: 4 X0 (R_p/R_d)^2 */
 double grains_for_coverage(double coverage, double carrier_radius, double grain_radius);
 
@@ -52,6 +66,12 @@ double grains_for_coverage(double coverage, double carrier_radius, double grain_
  * \throw TextureError  wrong arguments, or coverage too high to be placed: near 0.547 of the shell of the centres
  *                      outside the cap the placement jams */
 Texture place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare, uint64_t seed);
+
+/*! Monolayer of grains drawn from a distribution until their summed cross-section reaches the coverage, which the last one
+ *  exceeds by a part of its own; placed from large to small. No gap between two grains is below 0.001 of the sum of their
+ *  radii. */
+Texture place_monolayer(double carrier_radius, const SizeDistribution &sizes, double coverage, const BareCap &bare,
+                        uint64_t seed);
 
 /*! No grain inside the bare cap, wider than the carrier or overlapping another; throws TextureError naming the grains */
 void check_texture(const Texture &texture);

@@ -172,6 +172,75 @@ TEST(Texture, CommentsAndCarriageOfNumbers)
             "no error");
 }
 
+TEST(Texture, QuantilesOfSizeDistributions)
+{
+  const SizeDistribution lognormal = {SizeDistribution::LOGNORMAL, 15e-6, 1.5}, rrsb = {SizeDistribution::RRSB, 15e-6, 2.0};
+  EXPECT_NEAR(lognormal.quantile(0.5), 15e-6, 1e-18);
+  EXPECT_NEAR(lognormal.quantile(0.5 * std::erfc(-1.0 / std::sqrt(2.0))), 1.5 * 15e-6, 1e-17);    // one deviation above
+  EXPECT_NEAR(rrsb.quantile(0.5), 15e-6, 1e-18);
+  EXPECT_NEAR(rrsb.quantile(1.0 - std::exp(-1.0)), 15e-6 / std::sqrt(std::log(2.0)), 1e-17);    // x'
+}
+
+TEST(Texture, DistributedSizesAreTheOnesAskedFor)
+{
+  for (const SizeDistribution &sizes : {SizeDistribution{SizeDistribution::LOGNORMAL, 15e-6, 1.5},
+                                        SizeDistribution{SizeDistribution::RRSB, 15e-6, 3.0}}) {
+    std::vector<double> x;
+    double volume = 0.0;
+    for (int seed = 1; seed <= 5; seed++) {
+      const Texture t = place_monolayer(RP, sizes, 0.2, BareCap(), seed);
+      check_texture(t);
+      if (seed == 1) EXPECT_GE(least_gap(t), 0.999e-3 * 2.0 * t.grains.back().radius);
+      double area = 0.0, largest = 0.0;
+      for (const Grain &g : t.grains) {
+        x.push_back(2.0 * g.radius);
+        volume += std::pow(x.back(), 3);
+        area += g.radius * g.radius / (4.0 * RP * RP);
+        largest = std::max(largest, g.radius);
+        EXPECT_GE(g.n[2], -std::cos(0.33));
+      }
+      EXPECT_GE(area, 0.2);    // up to a part of one grain
+      EXPECT_LE(area, 0.2 + 0.25 * std::pow(largest / RP, 2));
+    }
+    std::sort(x.begin(), x.end());
+    EXPECT_GE(x.front(), sizes.quantile(0.01));
+    EXPECT_LE(x.back(), sizes.quantile(0.99));
+    // Kolmogorov's distance by volume: 1.95/sqrt(n) once in a thousand for n equal weights, and n (sum v)^2/sum v^2 of them
+    double below = 0.0, worst = 0.0, squares = 0.0;
+    for (const double d : x) squares += std::pow(d, 6);
+    const auto wanted = [&](double d) {
+      const double ln = std::log(d / sizes.x50);
+      const double whole = sizes.kind == SizeDistribution::RRSB ? 1.0 - std::exp(-std::log(2.0) * std::exp(sizes.spread * ln))
+                                                                : 0.5 * std::erfc(-ln / std::log(sizes.spread) / std::sqrt(2.0));
+      return (whole - 0.01) / 0.98;
+    };
+    for (const double d : x) {
+      below += std::pow(d, 3) / volume;
+      worst = std::max(worst, std::fabs(below - wanted(d)));
+    }
+    EXPECT_LT(worst, 1.95 / std::sqrt(volume * volume / squares));
+  }
+}
+
+TEST(Texture, DenseAndImpossibleDistributions)
+{
+  const SizeDistribution sizes = {SizeDistribution::LOGNORMAL, 80e-6, 1.3};
+  check_texture(place_monolayer(RP, sizes, 0.45, BareCap(), 1));
+  const auto error = [](const SizeDistribution &wrong, double coverage) -> std::string {
+    try {
+      place_monolayer(RP, wrong, coverage, BareCap(), 1);
+    } catch (TextureError &e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(error(sizes, 0.9).find("monolayer is full at"), std::string::npos);
+  EXPECT_NE(error({SizeDistribution::LOGNORMAL, 15e-6, 1.0}, 0.2).find("geometric standard deviation 1"), std::string::npos);
+  EXPECT_NE(error({SizeDistribution::RRSB, 15e-6, 0.0}, 0.2).find("exponent 0"), std::string::npos);
+  EXPECT_NE(error({SizeDistribution::RRSB, 0.0, 3.0}, 0.2).find("median diameter 0"), std::string::npos);
+  EXPECT_NE(error({SizeDistribution::LOGNORMAL, 1e-3, 2.0}, 0.2).find("carrier"), std::string::npos);
+}
+
 TEST(Texture, ErrorsNameTheLine)
 {
   const std::string head = "# dust texture 1\ncarrier_diameter 2\nbare 0.3 0 0 -1\ngrains 2\n";

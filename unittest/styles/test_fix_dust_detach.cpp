@@ -272,7 +272,7 @@ TEST(FixDustDetach, ARepeatedImpactActsOnWhatIsLeft)
 {
   Deck deck;
   deck.box();
-  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -2.0);
+  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -4.0);
   deck.wall_and_motion();
   dust(deck);
   deck("run 6000 post no");
@@ -451,17 +451,35 @@ TEST(FixDustDetach, WrongInputIsNamed)
   names(ok + "bare 4", "bare");
   names(ok + "bare 0.3 0 0 0", "bare");
   names(ok + "bare 0.3 0 0", "bare");
+  names(ok + "distribution", "distribution");
+  names(ok + "distribution lognormal 15e-6", "distribution");
+  names(ok + "distribution normal 15e-6 1.5", "normal");
+  names(ok + "distribution lognormal 15e-6 1", "distribution value 1 ");
+  names(ok + "distribution rrsb 0 3", "distribution");
   names(ok + "tangential sideways", "sideways");
   names(ok + "tangential integrate", "integrate");
   names(ok + "criteria all", "all");
   names(ok + "every 0", "every");
-  for (const char *later : {"rotation yes", "mass yes", "orientation random", "emit 2", "distribution lognormal 15e-6 1.5", "stiffen 10"})
+  for (const char *later : {"rotation yes", "mass yes", "orientation random", "emit 2", "stiffen 10"})
     names(ok + later, std::string(later).substr(0, 6));
 
   EXPECT_NE(error(ok, false).find("no carriers"), std::string::npos);
   Deck points;
   points.box("atomic");
   EXPECT_NE(points.attempt("fix dust all dust/detach " + ok).find("radius"), std::string::npos);
+}
+
+TEST(FixDustDetach, GrainsOfDistributedSizes)
+{
+  // the same as from a file; large grains leave first: F_c/m_d falls with the square of their size
+  const std::vector<double> v = impact("distribution lognormal 15e-6 1.5 write dust_sizes.txt", 0.0, -4.0);
+  Deck deck;
+  deck.box();
+  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -4.0);
+  deck.wall_and_motion();
+  deck("fix dust all dust/detach texture file dust_sizes.txt\nrun 4000 post no");
+  EXPECT_EQ(deck.vector(), v);
+  EXPECT_GT(v[7] / v[8], 1.2 * (v[1] - v[2]) / v[1]);
 }
 
 TEST(FixDustDetach, BadTextureFilesAreRefused)

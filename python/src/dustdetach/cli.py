@@ -105,6 +105,12 @@ def _parser() -> argparse.ArgumentParser:
     make = _command(textures, "make", "place grains on a carrier and write them to a file", _texture_make)
     for name in _TEXTURE:
         _add_parameter(make, name, required=False)
+    make.add_argument(
+        "--distribution",
+        nargs=3,
+        metavar=("KIND", "X50", "SPREAD"),
+        help="of sizes by volume: lognormal, median (m) and geometric standard deviation, or rrsb, median and exponent",
+    )
     make.add_argument("--out", type=Path, required=True, metavar="FILE", help="texture file")
     make.add_argument("--picture", type=Path, metavar="PNG", help="draw it, too")
     check = _command(textures, "check", "check a texture file", _texture_check)
@@ -220,13 +226,21 @@ def _plot(options: argparse.Namespace, _: bool) -> int:
 
 
 def _texture_make(options: argparse.Namespace, _: bool) -> int:
-    from .texture import check_texture, make_texture, read_texture
+    from .texture import Distribution, check_texture, make_texture, read_texture
 
+    distribution = None
+    if options.distribution:
+        kind, *numbers = options.distribution
+        try:
+            median, spread = map(float, numbers)
+        except ValueError:
+            raise InvalidInput(f"--distribution: {' '.join(numbers)}: not two numbers") from None
+        distribution = Distribution(kind, median, spread)
     # the speed of the impact does not matter to its texture
     impact = Impact.from_mapping({"speed": 1.0, **_given(options, _TEXTURE)})
     out = writable_file(options.out, "--out")
     picture = _png(options.picture, "--picture") if options.picture else None
-    make_texture(impact, out)
+    make_texture(impact, out, distribution)
     texture = read_texture(out)
     check_texture(texture)
     if picture:

@@ -67,14 +67,50 @@ class Texture:
         return float(np.sum(self.diameters**2) / (4 * self.carrier_diameter**2))
 
 
-def make_texture(impact: Impact, path: Path) -> None:
+DISTRIBUTIONS = ("lognormal", "rrsb")
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Sizes of grains by volume, cut at the volume fractions 0.01 and 0.99.
+
+    Attributes:
+        kind: ``lognormal`` or ``rrsb`` (Rosin-Rammler).
+        median: x_50,3, m, above 0.
+        spread: geometric standard deviation, above 1, or the exponent of ``rrsb``, above 0.
+
+    Raises:
+        InvalidInput: a value outside its range.
+    """
+
+    kind: str
+    median: float
+    spread: float
+
+    def __post_init__(self) -> None:
+        if self.kind not in DISTRIBUTIONS:
+            allowed = ", ".join(DISTRIBUTIONS)
+            raise InvalidInput(f"--distribution: unknown choice '{self.kind}'; allowed: {allowed}")
+        least = 1.0 if self.kind == "lognormal" else 0.0
+        for name, value, low in (("median diameter", self.median, 0.0), ("spread", self.spread, least)):
+            if not (value > low and math.isfinite(value)):
+                raise InvalidInput(f"--distribution: {name} {value:g} is out of range; allowed: above {low:g}")
+
+
+def make_texture(impact: Impact, path: Path, distribution: Distribution | None = None) -> None:
     """Make the texture of an impact (its coverage, bare cap, diameters and seed) and write it to a file.
 
     The grains are placed by ``fix dust/detach``, so that an impact with the same parameters has the same ones.
 
+    Args:
+        impact: the parameters.
+        path: the file.
+        distribution: sizes of the grains, in place of the impact's grain diameter.
+
     Raises:
         InvalidInput: the coverage cannot be placed.
     """
+    sizes = f" distribution {distribution.kind} {distribution.median!r} {distribution.spread!r}" if distribution else ""
     with replace_file(path) as part, lammps_session() as lmp:
         lmp.commands_list(
             [
@@ -87,7 +123,7 @@ def make_texture(impact: Impact, path: Path) -> None:
                 "create_atoms 1 single 0 0 0",
                 f"set atom 1 diameter {impact.carrier_diameter!r}",
                 f"fix dust all dust/detach texture monolayer {impact.grain_diameter!r} coverage {impact.coverage!r} "
-                f'seed {impact.seed} bare {impact.bare!r} write "{part}"',
+                f'seed {impact.seed} bare {impact.bare!r}{sizes} write "{part}"',
             ]
         )
 
