@@ -123,11 +123,11 @@ void GranSubModNormalJKRVdW::mix_coeffs(double *icoeffs, double *jcoeffs)
 
 void GranSubModNormalJKRVdW::use_radius(double Reff)
 {
-  if (Reff == last_Reff) return;
   last_Reff = Reff;
   Fc = Dust::pull_off_force(gamma, Reff);
   a0 = Dust::equilibrium_contact_radius(gamma, Reff, modulus);
   delta_c = Dust::breaking_gap(a0, Reff);
+  largest_gap = std::max(delta_c, range);
   const double shared = std::min(delta_c, range);
   if (!warned && Dust::NECK_WORK * delta_c < z0 * shared / (z0 + shared)) {
     warned = true;
@@ -142,8 +142,8 @@ void GranSubModNormalJKRVdW::use_radius(double Reff)
 
 bool GranSubModNormalJKRVdW::touch()
 {
-  use_radius(gm->Reff);
-  const double reach = gm->radsum + std::max(delta_c, range);
+  if (gm->Reff != last_Reff) use_radius(gm->Reff);
+  const double reach = gm->radsum + largest_gap;
   return gm->rsq < reach * reach;
 }
 
@@ -179,7 +179,7 @@ void GranSubModNormalJKRVdW::check_skin(double reach)
 
 double GranSubModNormalJKRVdW::calculate_contact_radius()
 {
-  use_radius(gm->Reff);
+  if (gm->Reff != last_Reff) use_radius(gm->Reff);
   if (laid_out != neck_place()) lay_out_history();
   // x of the last step, negated when i and j have changed places
   double &kept = gm->history[laid_out];

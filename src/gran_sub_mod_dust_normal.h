@@ -55,7 +55,7 @@ namespace Granular_NS {
     double hamaker, z0, z_cut, range, gamma, modulus;
     double mixed_modulus;    // 0 if the materials are equal
     // what depends on the effective radius alone, of the last one
-    double last_Reff, Fc, a0, delta_c;
+    double last_Reff, Fc, a0, delta_c, largest_gap;
     bool warned;
     void use_radius(double);
     void check_skin(double);
