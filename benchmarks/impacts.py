@@ -120,6 +120,7 @@ def key(row: Result, *without: str) -> tuple:
 
 def pairs(rows: Iterable[Result]) -> list[Pair]:
     """Functions and resolved run of the same impact."""
+    rows = list(rows)
     functions = {key(row): row for row in rows if row.method == "functions"}
     return [
         (functions[key(row)], row)
@@ -198,9 +199,13 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     ]
     lines = []
     for damping in DAMPINGS:
-        damped = pairs(row for row in smooth if row.grain_damping == damping)
+        damped = pairs(row for row in rows if row.grain_damping == damping)
         straight = [pair for pair in damped if pair[0].angle == 90]
-        oblique = [pair for pair in damped if pair[0].angle != 90]
+        oblique = [
+            pair
+            for pair in damped
+            if pair[0].angle != 90 and pair[0].wall_friction == 0.05
+        ]
         lines.append(agreement(f"straight, zeta {damping:g}", straight))
         if oblique:
             lines.append(agreement(f"oblique, zeta {damping:g}", oblique))
@@ -215,7 +220,12 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     ]
     lines.append(agreement("zeta 1, cases of the weaker dampings alone", same))
     rough = pairs(row for row in plain if row.wall_friction == 0.3)
-    lines.append(agreement("wall friction 0.3", rough))
+    lines.append(
+        agreement(
+            "oblique, zeta 1, wall friction 0.3",
+            [pair for pair in rough if pair[0].angle != 90],
+        )
+    )
     yield from table(head, lines)
 
     yield "## What the paper says"
@@ -448,7 +458,9 @@ def figures(data: dict[str, list[Result]]) -> None:
     def with_curves(
         chosen: list[Result], belongs: Callable[[Result], bool], name: str
     ) -> None:
-        draw([row for row in chosen if belongs(row)], HERE / name)
+        for path in draw([row for row in chosen if belongs(row)], HERE / name):
+            if path.suffix == ".svg":
+                path.unlink()
 
     with_curves(smooth, lambda row: row.angle == 90, "figure4")
     with_curves(smooth, lambda row: row.restitution == 0.7, "figure5")
