@@ -1,4 +1,4 @@
-"""Shared by all tests: the command, and the sweeps of both figures, run once."""
+"""Shared by all tests: the command, the sweeps of both figures and a small resolved impact, each run once."""
 
 import os
 import subprocess
@@ -10,7 +10,7 @@ import pytest
 # so that tests find closed_form.py whatever pytest's import mode
 sys.path.insert(0, str(Path(__file__).parent))
 
-from dustdetach import figure4, figure5, read_csv, sweep
+from dustdetach import Impact, figure4, figure5, read_csv, run, sweep
 
 
 @pytest.fixture
@@ -39,3 +39,21 @@ def figures_folder(tmp_path_factory):
 def figures_table(figures_folder):
     """Rows of both sweeps by (speed, angle, restitution)."""
     return {(row.speed, row.angle, row.restitution): row for row in read_csv(figures_folder / "results.csv")}
+
+
+@pytest.fixture(scope="session")
+def resolved_impact():
+    """A carrier with 45 grains as atoms, a second of computing."""
+    return Impact(method="resolved", speed=8.0, angle=60.0, coverage=0.002)
+
+
+@pytest.fixture(scope="session")
+def resolved_frames(tmp_path_factory):
+    """File of the frames of `resolved_impact`; its name needs quoting."""
+    return tmp_path_factory.mktemp("resolved") / "all frames.dump"
+
+
+@pytest.fixture(scope="session")
+def resolved_result(resolved_impact, resolved_frames):
+    """Result of `resolved_impact`, which also writes `resolved_frames`."""
+    return run(resolved_impact, frames=resolved_frames)

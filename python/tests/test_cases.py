@@ -1,10 +1,11 @@
-"""The sweeps of the paper's figures, the numbers the paper reports, and sweeps from TOML files."""
+"""The sweeps of the paper's figures, the numbers the paper reports, methods, and sweeps from TOML files."""
 
 from itertools import pairwise
 
 import pytest
 
 from dustdetach import Impact, InvalidInput, figure4, figure5, read_cases
+from dustdetach.cases import with_methods
 
 ANGLES_DOWN = (90.0, 75.0, 60.0, 45.0, 30.0)
 
@@ -91,3 +92,32 @@ def test_toml_mistakes_are_named(tmp_path, text, words):
         read_cases(path)
     assert words in str(refusal.value)
     assert str(path) in str(refusal.value)
+
+
+def test_methods_of_a_sweep():
+    slow, fast = Impact(speed=2), Impact(speed=4)
+    resolved = [Impact(speed=v, method="resolved") for v in (2, 4)]
+    mixed = [slow, resolved[1]]
+    assert with_methods(mixed, None) == mixed
+    assert with_methods(mixed, "functions") == [slow, fast]
+    assert with_methods(mixed, "resolved") == resolved
+    assert with_methods(mixed, "both") == [slow, fast, *resolved]
+    # what becomes the same case is run once
+    assert with_methods([slow, resolved[0]], "both") == [slow, resolved[0]]
+
+
+def test_an_unknown_method_of_a_sweep():
+    with pytest.raises(InvalidInput) as refusal:
+        with_methods([Impact(speed=2)], "magic")
+    assert str(refusal.value) == "--method: unknown choice 'magic'; allowed: functions, resolved, both"
+
+
+def test_a_sweep_that_cannot_be_resolved():
+    with pytest.raises(InvalidInput, match="--timestep"):
+        with_methods([Impact(speed=2), Impact(speed=2, timestep=1e-8)], "both")
+
+
+def test_toml_names_methods(tmp_path):
+    path = tmp_path / "sweep.toml"
+    path.write_text("speed = 4\nmethod = ['functions', 'resolved']\n")
+    assert read_cases(path) == [Impact(speed=4), Impact(speed=4, method="resolved")]

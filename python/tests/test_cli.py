@@ -70,6 +70,23 @@ def test_without_json_a_summary(command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_resolved_impact(command, tmp_path):
+    words = (*IMPACT, "--method", "resolved", "--coverage", "0.0004")
+    printed = json.loads(command(*words, "--json").stdout)
+    assert list(printed) == INTERFACE_KEYS
+    assert (printed["method"], printed["normal"], printed["tangential_mode"]) == ("resolved", None, None)
+
+    process = command(*words)
+    assert process.returncode == 0, process.stderr
+    assert process.stderr == ""
+    assert "south" in process.stdout
+    assert f"dispersion ratio   {printed['dispersion_ratio']:.4f}" in process.stdout
+    # which lift-off took a grain is what only the functions know
+    assert "by lift-off" not in process.stdout
+    assert f"ended by {printed['end']}" in process.stdout
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -100,8 +117,10 @@ def test_without_json_a_summary(command, tmp_path):
             "--tangential: unknown choice 'integrate'; allowed: estimate, frictionless, off",
         ),
         (("--timestep", "1"), "--timestep: 1 is out of range"),
-        (("--method", "resolved"), "--method: resolved impacts are not there yet"),
-        (("--method", "magic"), "--method: unknown choice 'magic'; allowed: functions"),
+        (("--method", "magic"), "--method: unknown choice 'magic'; allowed: functions, resolved"),
+        (("--method", "both"), "--method: unknown choice 'both'; allowed: functions, resolved"),
+        (("--method", "resolved", "--timestep", "1e-8"), "--timestep: 1e-08 s does not resolve the contact of a grain"),
+        (("--method", "resolved", "--grain-diameter", "2e-6"), "in a resolved run at most 100000"),
         (("--rotation",), "--rotation: following the carrier's spin is not there yet"),
         (("--picture", "carrier.txt"), "--picture: carrier.txt; allowed: a file name that ends in .png"),
         (("--picture", "no/such/carrier.png"), "--picture: there is no folder no/such"),
@@ -129,8 +148,8 @@ def test_what_lammps_refuses(command, tmp_path):
         (("sweep", "figure4", "--out", "out", "--jobs", "0"), "--jobs: 0 is out of range; allowed: 1 or more"),
         (("sweep", "figure4", "--out", "out", "--executor", "cloud"), "--executor: unknown choice 'cloud'"),
         (
-            ("sweep", "figure4", "--out", "out", "--method", "both"),
-            "--method: both is not there yet; allowed: functions",
+            ("sweep", "figure4", "--out", "out", "--method", "magic"),
+            "--method: unknown choice 'magic'; allowed: functions, resolved, both",
         ),
         (("plot", "nowhere"), "nowhere/results.csv: no such file"),
         (("report", "nowhere"), "report is not there yet; allowed: plot"),

@@ -6,7 +6,7 @@ import pytest
 from matplotlib import pyplot as plt
 
 from dustdetach import InvalidInput, read_csv
-from dustdetach.figures import draw, plot
+from dustdetach.figures import COLOURS, draw, plot
 from dustdetach.result import write_csv
 
 
@@ -33,6 +33,35 @@ def test_the_picture_says_what_it_shows(figures_folder, tmp_path):
     text = (tmp_path / "both.svg").read_text()
     for words in ("Impact speed", "(m/s)", "Dispersion ratio", "North", "South", "dust-resolved", "0.5"):
         assert words in text
+
+
+def resolved(row, **changes):
+    return replace(row, method="resolved", normal=None, tangential_mode=None, **changes)
+
+
+@pytest.mark.filterwarnings("error")
+def test_resolved_rows_of_other_parameters_are_a_curve_of_their_own(figures_folder, tmp_path):
+    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    others = [resolved(row, grain_damping=0.2) for row in rows if row.restitution == 0.7 and row.speed in (4, 8)]
+    # a layout that does not fit is a warning, and so an error here
+    with plt.rc_context({"svg.fonttype": "none"}):
+        draw([*rows, *others], tmp_path / "damping")
+    text = (tmp_path / "damping.svg").read_text()
+    assert text.count("ζ") == 4
+    assert text.count("0.2<") >= 1
+
+
+@pytest.mark.filterwarnings("error")
+def test_resolved_rows_alone_are_open_markers_one_a_seed(figures_folder, tmp_path):
+    rows = [row for row in read_csv(figures_folder / "results.csv") if (row.angle, row.restitution) == (90, 0.7)]
+    seeds = [resolved(row, seed=seed) for row in rows if row.speed in (4, 8) for seed in (1, 2, 3)]
+    with plt.rc_context({"svg.fonttype": "none"}):
+        draw(seeds, tmp_path / "seeds")
+    text = (tmp_path / "seeds.svg").read_text()
+    assert ">dust-resolved<" in text
+    assert ">functions<" not in text
+    # three panels with six points and the legend's
+    assert text.count(f"fill: #ffffff; stroke: {COLOURS[0].lower()}") == 3 * 6 + 1
 
 
 def test_the_same_table_makes_the_same_file(figures_folder, tmp_path):

@@ -45,8 +45,7 @@ def test_numbers_of_any_kind_become_plain_ones():
         ("seed", -5, "1 to 900000000"),
         ("seed", 1.5, "whole number"),
         ("tangential", "integrate", "estimate, frictionless, off"),
-        ("method", "resolved", "functions"),
-        ("method", "both", "functions"),
+        ("method", "both", "functions, resolved"),
         ("rotation", True, "--no-rotation"),
         ("rotation", 1, "not true or false"),
         ("timestep", 0, "above 0 and at most 1e-07 s"),
@@ -61,3 +60,35 @@ def test_out_of_range(name, value, allowed):
     assert message.startswith("--" + name.replace("_", "-"))
     assert allowed in message
     assert "\n" not in message
+
+
+def test_a_grain_oscillates_in_a_quarter_of_a_microsecond():
+    # 2 pi sqrt(m_d/k_0) with m_d 1.1310e-11 kg, E* 6.073e10 Pa and a_0 90.18 nm
+    expected = 2 * math.pi * math.sqrt(1.1310e-11 / (1.2 * 6.073e10 * 90.18e-9))
+    assert Impact(speed=4).grain_period == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("grain_diameter", 2e-6, "--grain-diameter: 2e-06 makes 450000 grains, in a resolved run at most 100000"),
+        ("timestep", 1e-8, "--timestep: 1e-08 s does not resolve the contact of a grain"),
+        ("carrier_diameter", 0.03, "--carrier-diameter: 0.03 makes a contact of "),
+    ],
+)
+def test_a_resolved_run_allows_less(name, value, words):
+    others = {"coverage": 0.2, "grain_diameter": 4e-4 if name == "carrier_diameter" else 20e-6}
+    parameters = {"speed": 8.0, **others, name: value}
+    assert Impact(**parameters).method == "functions"
+    with pytest.raises(InvalidInput) as refusal:
+        Impact(method="resolved", **parameters)
+    message = str(refusal.value)
+    assert message.startswith(words)
+    assert "\n" not in message
+    # the end of the range that the message names is allowed
+    range_named = message.split("allowed: ")[1]
+    if name == "grain_diameter":
+        nearly = 1.01 * float(range_named.split()[0])
+    else:
+        nearly = 0.99 * float(range_named.split("at most ")[1].split()[0])
+    assert Impact(method="resolved", **{**parameters, name: nearly}).method == "resolved"

@@ -1,12 +1,14 @@
 """Pictures of carriers, drawn by LAMMPS."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
 from dustdetach import Impact, InvalidInput
 from dustdetach import pictures as module
-from dustdetach.pictures import draw_impact, draw_texture, read_fates
+from dustdetach.pictures import draw_impact, draw_moments, draw_texture, read_fates
 from dustdetach.texture import make_texture, read_texture
 
 
@@ -14,6 +16,7 @@ from dustdetach.texture import make_texture, read_texture
 def small(monkeypatch):
     """Small pictures: the time LAMMPS takes grows with the third power of the size."""
     monkeypatch.setattr(module, "SIZE", 300)
+    monkeypatch.setattr(module, "MOMENT_SIZE", 200)
 
 
 def share(pixels, red, green, blue):
@@ -70,3 +73,33 @@ def test_the_command_draws(command, tmp_path):
     drawn = command("texture", "draw", "t.txt", "--out", "t.png")
     assert (drawn.returncode, drawn.stdout, drawn.stderr) == (0, "t.png\n", "")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["t.png", "t.txt"]
+
+
+def test_four_moments_of_a_resolved_impact(tmp_path, resolved_frames, resolved_result):
+    draw_moments(resolved_frames, resolved_result, tmp_path / "moments.png")
+    pixels = plt.imread(tmp_path / "moments.png")[:, :, :3]
+    height, width = (length // 2 for length in pixels.shape[:2])
+    first, *_, last = (pixels[top : top + height, left : left + width] for top in (0, height) for left in (0, width))
+    orange = module.STATES[1].colour
+    assert share(first, *orange) == 0
+    assert share(last[: int(0.8 * height)], *orange) > 0.0005
+    # the wall, from the left to the right
+    wall = np.abs(first - first.max(axis=2, keepdims=True)).max(axis=2) < 0.12
+    assert (wall & (first.max(axis=2) < 0.95)).any(axis=0).mean() > 0.9
+    assert [path.name for path in tmp_path.iterdir()] == ["moments.png"]
+
+
+def test_the_picture_of_a_resolved_impact_is_that_of_its_frames(tmp_path, monkeypatch, resolved_impact):
+    drawn = []
+    monkeypatch.setattr(module, "draw_moments", lambda frames, result, path: drawn.append((frames.is_file(), result)))
+    result = draw_impact(resolved_impact, tmp_path / "moments.png")
+    assert drawn == [(True, result)]
+    assert result.method == "resolved"
+
+
+def test_the_moments_are_before_after_and_as_late_as_all_grains_are_there(resolved_result):
+    result = replace(resolved_result, contact_time=3.1e-6, timestep=1e-9, grains=45)
+    sizes = {step: 46 for step in range(0, 50001, 500)}
+    assert module._moments(sizes, result) == [0, 3500, 13000, 50000]
+    sizes.update({step: 45 for step in range(30000, 50001, 500)})
+    assert module._moments(sizes, result) == [0, 3500, 10000, 29500]

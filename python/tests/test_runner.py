@@ -87,3 +87,48 @@ def test_what_lammps_refuses_is_one_line():
     assert "coverage" in str(refusal.value)
     assert "\n" not in str(refusal.value)
     assert ".cpp" not in str(refusal.value)
+
+
+def test_a_resolved_impact_fills_the_record(resolved_result):
+    assert resolved_result.method == "resolved"
+    assert resolved_result.grains == 45
+    assert resolved_result.normal is None
+    assert resolved_result.tangential_mode is None
+    assert 0 < resolved_result.dispersion_ratio < 1
+    assert min(resolved_result.north, resolved_result.south) >= 0
+    assert resolved_result.north + resolved_result.south == pytest.approx(resolved_result.dispersion_ratio, abs=1e-12)
+    for share in (resolved_result.north, resolved_result.south):
+        assert share * 45 == pytest.approx(round(share * 45), abs=1e-9)
+    assert resolved_result.end in ("settled", "limit")
+    assert resolved_result.steps > 10 * resolved_result.contact_time / resolved_result.timestep
+    assert 0 < resolved_result.loop_seconds <= resolved_result.wall_seconds
+    assert resolved_result.lammps_version >= 20250204
+
+
+def test_few_grains_do_not_change_the_collision(resolved_impact, resolved_result):
+    # all grains weigh 0.37 % of the carrier at a coverage of 0.2, and these a hundredth of that
+    functions = run(replace(resolved_impact, method="functions"))
+    assert resolved_result.contact_time == pytest.approx(functions.contact_time, abs=2.5 * resolved_impact.timestep)
+    assert resolved_result.peak_acceleration == pytest.approx(functions.peak_acceleration, rel=2e-4)
+    assert resolved_result.restitution_realised == pytest.approx(functions.restitution_realised, rel=2e-4)
+
+
+def test_a_resolved_impact_that_detaches_nothing_settles():
+    result = run(Impact(method="resolved", speed=0.05, coverage=0.0004))
+    assert (result.dispersion_ratio, result.north, result.south) == (0, 0, 0)
+    assert result.end == "settled"
+
+
+def test_parameters_of_a_resolved_run_reach_lammps(resolved_impact, resolved_result):
+    for change in ({"grain_damping": 0.1}, {"friction": 0.1}, {"seed": 2}, {"hamaker": 2e-19}):
+        result = run(replace(resolved_impact, **change))
+        # all of these move the carrier a little through its grains
+        assert result.peak_acceleration != resolved_result.peak_acceleration, change
+
+
+def test_each_method_writes_its_own_files_only(tmp_path):
+    with pytest.raises(InvalidInput, match="events"):
+        run(Impact(speed=8.0, method="resolved"), events=tmp_path / "events")
+    with pytest.raises(InvalidInput, match="frames"):
+        run(Impact(speed=8.0), frames=tmp_path / "frames")
+    assert list(tmp_path.iterdir()) == []

@@ -10,7 +10,9 @@ import time
 import pytest
 
 from dustdetach import CasesFailed, Impact, InvalidInput, sweep
+from dustdetach.places import find_deck
 from dustdetach.result import KEYS
+from dustdetach.sweeping import Build
 
 CASES = [Impact(speed=float(speed), angle=angle) for speed in range(2, 8) for angle in (60.0, 90.0)]
 
@@ -67,6 +69,56 @@ def test_a_killed_sweep_picks_up_where_it_stopped(tmp_path, command):
     after = completed(folder)
     assert {path: after[path] for path in before} == before
     assert len(after) == len(rows(folder)) == len(speeds)
+
+
+def test_both_methods_in_a_folder_after_a_kill(tmp_path, command):
+    (tmp_path / "sweep.toml").write_text("speed = [4, 8]\ncoverage = 0.0004\n")
+    folder = tmp_path / "out"
+    words = ["sweep", "sweep.toml", "--method", "both", "--out", "out"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "dustdetach", *words], cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True
+    )
+    # functions first; killed in the second of the resolved impacts
+    while not list(folder.glob("resolved-*/result.json")):
+        assert process.poll() is None
+        time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    before = completed(folder)
+    assert len(before) == 3
+
+    again = command(*words)
+    assert again.returncode == 0, again.stderr
+    assert again.stderr.startswith("3/4 cases")
+    after = completed(folder)
+    assert {path: after[path] for path in before} == before
+    table = rows(folder)
+    assert sorted((row["method"], float(row["speed"])) for row in table) == [
+        ("functions", 4),
+        ("functions", 8),
+        ("resolved", 4),
+        ("resolved", 8),
+    ]
+    for row in table:
+        assert (row["normal"] == "") == (row["tangential_mode"] == "") == (row["method"] == "resolved")
+    # a sweep by one method keeps the rows of the other
+    assert command("sweep", "sweep.toml", "--out", "out").returncode == 0
+    assert completed(folder) == after
+    assert rows(folder) == table
+
+
+def test_each_method_has_its_own_deck_in_the_name(monkeypatch, tmp_path):
+    build = Build()
+    assert build.identity["functions"] != build.identity["resolved"]
+    functions, resolved = (build.name(Impact(speed=4.0, method=method)) for method in ("functions", "resolved"))
+    for name in ("in.impact", "in.impact.resolved"):
+        shutil.copy(find_deck(name), tmp_path)
+    with open(tmp_path / "in.impact.resolved", "a") as stream:
+        stream.write("# changed\n")
+    monkeypatch.setattr("dustdetach.sweeping.find_deck", lambda name: tmp_path / name)
+    # results of the other method stay good
+    assert Build().name(Impact(speed=4.0)) == functions
+    assert Build().name(Impact(speed=4.0, method="resolved")) != resolved
 
 
 def test_sweeps_of_the_same_folder_share_cases_and_the_table(figures_folder, figures_table):

@@ -88,7 +88,9 @@ def _parser() -> argparse.ArgumentParser:
         "--rotation", action=argparse.BooleanOptionalAction, default=False, help="follow the carrier's spin"
     )
     impact.add_argument("--json", action="store_true", help="print one JSON object")
-    impact.add_argument("--picture", type=Path, metavar="PNG", help="draw the carrier after the impact")
+    impact.add_argument(
+        "--picture", type=Path, metavar="PNG", help="draw the carrier after the impact; four moments of a resolved one"
+    )
 
     sweep = _command(commands, "sweep", "many impacts into a folder; picks up where it stopped", _sweep)
     sweep.add_argument("cases", metavar="|".join(NAMED) + "|FILE.toml", help="a figure of the paper, or a TOML file")

@@ -13,6 +13,7 @@ matplotlib.use("Agg")
 
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
@@ -122,9 +123,7 @@ def draw(results: list[Result], stem: Path) -> list[Path]:
         axes["all"].set_xlabel("Impact speed $v_p$ (m/s)")
         axes["south"].set_xlabel("Impact speed $v_p$ (m/s)")
         axes["north"].tick_params(labelbottom=False)
-        figure.legend(
-            handles=_legend(curves, results), loc="outside upper center", ncols=6, handlelength=2, columnspacing=1.3
-        )
+        _add_legend(figure, _legend(curves, results))
         written = []
         for suffix in FORMATS:
             path = stem.with_name(f"{stem.name}.{suffix}")
@@ -163,20 +162,26 @@ def _panel(axes: Axes, curves: dict[Curve, list[Result]], share: Callable[[Resul
         for row in rows:
             if row.method == "functions":
                 means[row.speed].append(share(row))
-        speeds = sorted(means)
-        ratios = [sum(means[speed]) / len(means[speed]) for speed in speeds]
-        axes.plot(speeds, ratios, color=colour, marker=marker, clip_on=False)
+        # an unclipped line without points has no place, which upsets the layout
+        if means:
+            speeds = sorted(means)
+            ratios = [sum(means[speed]) / len(means[speed]) for speed in speeds]
+            axes.plot(speeds, ratios, color=colour, marker=marker, clip_on=False)
         resolved = [row for row in rows if row.method == "resolved"]
-        axes.plot(
-            [row.speed for row in resolved],
-            [share(row) for row in resolved],
-            **_POINT,
-            color=colour,
-            marker=marker,
-        )
+        if resolved:
+            speeds = [row.speed for row in resolved]
+            axes.plot(speeds, [share(row) for row in resolved], **_POINT, color=colour, marker=marker)
 
 
-_POINT: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "white", "markersize": 6, "markeredgewidth": 1.3}
+_METHOD_NAMES = {"functions": "functions", "resolved": "dust-resolved"}
+_POINT: dict[str, Any] = {
+    "linestyle": "none",
+    "markerfacecolor": "white",
+    "markersize": 6,
+    "markeredgewidth": 1.3,
+    "zorder": 3,
+    "clip_on": False,
+}
 
 
 def _looks(count: int) -> list[tuple[Colour, str]]:
@@ -187,21 +192,30 @@ def _looks(count: int) -> list[tuple[Colour, str]]:
     return [(colour, MARKERS[index % len(MARKERS)]) for index, colour in enumerate(colours)]
 
 
-def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Line2D]:
-    differing = _differing(results)
-    handles = [
-        Line2D(
-            [],
-            [],
-            color=colour,
-            marker=marker,
-            label=", ".join(_label(name, value) for name, value in zip(differing, curve, strict=True)) or "functions",
+def _add_legend(figure: Figure, handles: list[Line2D]) -> None:
+    """A legend above the panels with as many columns as fit: one that is too wide would squeeze the panels."""
+    for columns in range(6, 0, -1):
+        legend = figure.legend(
+            handles=handles, loc="outside upper center", ncols=columns, handlelength=2, columnspacing=1.3
         )
-        for curve, (colour, marker) in zip(curves, _looks(len(curves)), strict=True)
-    ]
-    if {result.method for result in results} == {"functions", "resolved"}:
-        handles.append(Line2D([], [], color="0.3", label="functions"))
-        handles.append(Line2D([], [], color="0.3", marker="o", **_POINT, label="dust-resolved"))
+        if columns == 1 or legend.get_window_extent().width < figure.bbox.width:
+            return
+        legend.remove()
+
+
+def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Line2D]:
+    """An entry for each curve, with an open marker if all of it is resolved, then what lines and markers mean."""
+    differing = _differing(results)
+    methods = {result.method for result in results}
+    handles = []
+    for (curve, rows), (colour, marker) in zip(curves.items(), _looks(len(curves)), strict=True):
+        look = _POINT if all(row.method == "resolved" for row in rows) else {}
+        words = [_label(name, value) for name, value in zip(differing, curve, strict=True)]
+        label = ", ".join(words) or _METHOD_NAMES[rows[0].method]
+        handles.append(Line2D([], [], color=colour, marker=marker, label=label, **look))
+    if len(methods) > 1:
+        handles.append(Line2D([], [], color="0.3", label=_METHOD_NAMES["functions"]))
+        handles.append(Line2D([], [], color="0.3", marker="o", **_POINT, label=_METHOD_NAMES["resolved"]))
     return handles
 
 

@@ -39,6 +39,9 @@ LEAST_GRAIN_STEPS = 30
 #: the most grains of a resolved run, about 4 GB
 MOST_RESOLVED_GRAINS = 100_000
 
+#: a resolved run ends 50 us after its start: the longest contact that leaves time for grains to come off, s
+LONGEST_RESOLVED_CONTACT = 30e-6
+
 #: a contact of fewer steps is not resolved, one of more does not end within the deck's step limit
 LEAST_STEPS, MOST_STEPS = 50, 100_000
 
@@ -142,17 +145,30 @@ class Impact:
             )
 
         if self.method == "resolved":
-            if self.grains > MOST_RESOLVED_GRAINS:
-                raise InvalidInput(
-                    f"--grain-diameter: {self.grain_diameter:g} makes {self.grains:.3g} grains; allowed in a resolved "
-                    f"run: at most {MOST_RESOLVED_GRAINS}"
-                )
-            longest = self.grain_period / LEAST_GRAIN_STEPS
-            if self.timestep > longest:
-                raise InvalidInput(
-                    f"--timestep: {self.timestep:g} s does not resolve the contact of a grain, which oscillates in "
-                    f"{self.grain_period:.3g} s; allowed: at most {longest:.3g} s"
-                )
+            self._check_resolved()
+
+    def _check_resolved(self) -> None:
+        """What a resolved run needs beyond the ranges of all impacts."""
+        if self.grains > MOST_RESOLVED_GRAINS:
+            smallest = self.carrier_diameter * math.sqrt(4 * self.coverage / MOST_RESOLVED_GRAINS)
+            raise InvalidInput(
+                f"--grain-diameter: {self.grain_diameter:g} makes {self.grains} grains, in a resolved run at most "
+                f"{MOST_RESOLVED_GRAINS}; allowed: {smallest:.3g} to {self.carrier_diameter:g} m at this coverage"
+            )
+        longest = self.grain_period / LEAST_GRAIN_STEPS
+        if self.timestep > longest:
+            raise InvalidInput(
+                f"--timestep: {self.timestep:g} s does not resolve the contact of a grain, which oscillates in "
+                f"{self.grain_period:.3g} s; allowed: above 0 and at most {longest:.3g} s"
+            )
+        if self.hertz_contact_time > LONGEST_RESOLVED_CONTACT:
+            # at a given speed the contact time is proportional to the diameter
+            largest = self.carrier_diameter * LONGEST_RESOLVED_CONTACT / self.hertz_contact_time
+            raise InvalidInput(
+                f"--carrier-diameter: {self.carrier_diameter:g} makes a contact of {self.hertz_contact_time:.3g} s, in "
+                f"a resolved run at most {LONGEST_RESOLVED_CONTACT:g} s; allowed: above 0 and at most {largest:.3g} m "
+                "for this speed and angle"
+            )
 
     @property
     def grain_period(self) -> float:

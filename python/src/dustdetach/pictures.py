@@ -1,10 +1,16 @@
-"""Pictures of a carrier with its grains, each a sphere of its real size, drawn by LAMMPS' dump image."""
+"""Pictures of a carrier with its grains, each a sphere of its real size, drawn by LAMMPS' dump image.
+
+A texture, or an impact by the functions, is one carrier seen from below. A resolved impact is four moments of it seen
+from the side, as in the paper's Figs. 2 and 3.
+"""
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib
@@ -13,19 +19,25 @@ matplotlib.use("Agg")
 
 import numpy as np
 from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
+from PIL import Image
 
 from .errors import InvalidInput
 from .files import replace_file
+from .frames import Frame, frame_sizes, read_frames
 from .impact import Impact
 from .result import Result
 from .runner import run
 from .session import lammps_session
 from .texture import Texture, make_texture, read_texture
 
-#: width and height of the drawing, pixels
+#: width and height of the drawing of a carrier, and of each moment of an impact, pixels
 SIZE = 900
+MOMENT_SIZE = 600
 
 
 @dataclass(frozen=True)
@@ -36,7 +48,8 @@ class Kind:
     colour: tuple[float, float, float]
 
 
-CARRIER = (0.42, 0.46, 0.52)
+CARRIER = Kind("carrier", (0.42, 0.46, 0.52))
+WALL = Kind("wall", (0.74, 0.77, 0.80))
 GRAIN = Kind("grain", (0.96, 0.90, 0.76))
 
 #: what an impact makes of a grain, numbered like the modes of fix dust/detach; 0 stays attached
@@ -46,8 +59,36 @@ FATES = (
     Kind("detached, tangential lift-off", (0.0, 0.45, 0.70)),
 )
 
+#: what a grain is at a moment of a resolved impact
+STATES = (Kind("tied to the carrier", GRAIN.colour), Kind("detached", (0.84, 0.37, 0.0)))
+
 # column of the dumped events that hold the grain (from 1) and the mode, after step and carrier
 _GRAIN, _MODE = 2, 3
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """Spheres and how they are seen; lengths in carrier radii.
+
+    Attributes:
+        centres: of the spheres (N, 3).
+        radii: of the spheres (N,).
+        kinds: index of each sphere's kind in the palette (N,).
+        palette: the kinds.
+        box: lower and upper corner (2, 3) of what is drawn.
+        view: polar angle and azimuth of the camera, degrees; it looks at the middle of the box, z is up.
+        width: of the square drawing.
+        size: width of the square drawing, pixels.
+    """
+
+    centres: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    kinds: NDArray[np.int64]
+    palette: Sequence[Kind]
+    box: NDArray[np.float64]
+    view: tuple[float, float]
+    width: float
+    size: int
 
 
 def draw_texture(texture: Texture, path: Path) -> None:
@@ -55,25 +96,67 @@ def draw_texture(texture: Texture, path: Path) -> None:
     kinds = np.zeros(len(texture.diameters), dtype=int)
     with tempfile.TemporaryDirectory() as folder:
         image = Path(folder) / "carrier.png"
-        _render(texture, kinds, [GRAIN], image)
+        _render(_carrier_scene(texture, kinds, [GRAIN]), image)
         _compose(image, [], path)
 
 
 def draw_impact(impact: Impact, path: Path) -> Result:
-    """Run an impact and draw its carrier as PNG, every grain at its place and coloured by what became of it.
+    """Run an impact and draw it as PNG.
+
+    With the functions: the carrier, every grain at its place and coloured by what became of it. Resolved: four moments.
 
     Returns:
         The impact's result.
     """
+    draw = _draw_moments if impact.method == "resolved" else _draw_fates
     with tempfile.TemporaryDirectory() as folder:
-        events, grains, image = (Path(folder) / name for name in ("events.dump", "grains.txt", "carrier.png"))
-        result = run(impact, events=events)
-        make_texture(impact, grains)
-        texture = read_texture(grains)
-        fates = read_fates(events, len(texture.diameters))
-        _render(texture, fates, FATES, image)
-        _compose(image, _legend(np.bincount(fates, minlength=len(FATES))), path)
+        return draw(impact, path, Path(folder))
+
+
+def _draw_fates(impact: Impact, path: Path, folder: Path) -> Result:
+    events, grains, image = (folder / name for name in ("events.dump", "grains.txt", "carrier.png"))
+    result = run(impact, events=events)
+    make_texture(impact, grains)
+    texture = read_texture(grains)
+    fates = read_fates(events, len(texture.diameters))
+    _render(_carrier_scene(texture, fates, FATES), image)
+    _compose(image, _legend(np.bincount(fates, minlength=len(FATES))), path)
     return result
+
+
+def _draw_moments(impact: Impact, path: Path, folder: Path) -> Result:
+    dump = folder / "frames.dump"
+    result = run(impact, frames=dump)
+    draw_moments(dump, result, path)
+    return result
+
+
+def draw_moments(frames: Path, result: Result, path: Path) -> None:
+    """Draw four moments of a resolved impact as PNG, all seen by one camera from the side.
+
+    Args:
+        frames: what `run` wrote.
+        result: what it returned.
+        path: the picture.
+    """
+    steps = _moments(frame_sizes(frames), result)
+    chosen = read_frames(frames, steps)
+    with tempfile.TemporaryDirectory() as folder:
+        images = [Path(folder) / f"{frame.step}.png" for frame in chosen]
+        for frame, image in zip(chosen, images, strict=True):
+            _render(_side_scene(frame), image)
+        _compose_moments(chosen, images, result, path)
+
+
+def _moments(sizes: dict[int, int], result: Result) -> list[int]:
+    """Steps of the four moments, from the atoms in each frame by its step.
+
+    The first frame; the first after the contact; the last in which no grain has left the box yet; one between these.
+    """
+    contact = [step for step in sizes if step * result.timestep > result.contact_time] or list(sizes)
+    last = max((step for step in contact if sizes[step] == result.grains + 1), default=contact[-1])
+    between = math.sqrt(max(contact[0], 1) * last)
+    return [min(sizes), contact[0], min(contact, key=lambda step: abs(step - between)), last]
 
 
 def read_fates(path: Path, grains: int) -> NDArray[np.int64]:
@@ -96,13 +179,60 @@ def read_fates(path: Path, grains: int) -> NDArray[np.int64]:
     return fates
 
 
-def _render(texture: Texture, kinds: NDArray[np.int64], palette: Sequence[Kind], image: Path) -> None:
-    """Let LAMMPS draw the spheres; lengths in carrier radii."""
+def _carrier_scene(texture: Texture, kinds: NDArray[np.int64], palette: Sequence[Kind]) -> _Scene:
+    """A carrier seen from below; ``kinds`` and ``palette`` are those of its grains."""
     radius = texture.carrier_diameter / 2
-    centres = np.vstack([np.zeros(3), texture.centres / radius])
     radii = np.concatenate([[1.0], texture.diameters / 2 / radius])
     half = float(1 + 2 * radii[1:].max())
-    number = len(radii)
+    return _Scene(
+        centres=np.vstack([np.zeros(3), texture.centres / radius]),
+        radii=radii,
+        kinds=np.concatenate([[0], kinds + 1]),
+        palette=[CARRIER, *palette],
+        box=np.array([[-half] * 3, [half] * 3]),
+        view=(122, 25),
+        width=4 * half / 1.62,
+        size=SIZE,
+    )
+
+
+#: radius of the small spheres that make the plate of the wall, and their distance along x and y, in carrier radii
+_PLATE_RADIUS, _PLATE_STEPS = 0.04, (0.01, 0.015)
+#: what is drawn around the deck's box, in carrier radii
+_MARGIN = 0.05
+
+
+def _side_scene(frame: Frame) -> _Scene:
+    """Carrier, grains and wall seen from the side, in a box that is the same for all frames of a run."""
+    unit = frame.carrier_radius
+    box = frame.box / unit + [[-_MARGIN], [_MARGIN]]
+    plate = _plate(box)
+    inside = ((frame.centres / unit > box[0]) & (frame.centres / unit < box[1])).all(axis=1)
+    return _Scene(
+        centres=np.vstack([frame.carrier / unit, plate, frame.centres[inside] / unit]),
+        radii=np.concatenate([[1.0], np.full(len(plate), _PLATE_RADIUS), frame.radii[inside] / unit]),
+        kinds=np.concatenate([[0], np.full(len(plate), 1), np.where(frame.tied[inside], 2, 3)]),
+        palette=[CARRIER, WALL, *STATES],
+        box=box,
+        view=(84, -90),
+        width=float((box[1] - box[0]).max()),
+        size=MOMENT_SIZE,
+    )
+
+
+def _plate(box: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Centres (N, 3) of small spheres that together look like the wall z = 0."""
+    x, y = (
+        np.arange(low + _PLATE_RADIUS, high - _PLATE_RADIUS, step)
+        for (low, high), step in zip(box.T[:2], _PLATE_STEPS, strict=True)
+    )
+    return np.array([(a, b, -_PLATE_RADIUS) for a in x for b in y])
+
+
+def _render(scene: _Scene, image: Path) -> None:
+    """Let LAMMPS draw the spheres, orthographically."""
+    (x0, y0, z0), (x1, y1, z1) = scene.box
+    number = len(scene.radii)
     with lammps_session() as lmp:
         lmp.commands_list(
             [
@@ -110,20 +240,23 @@ def _render(texture: Texture, kinds: NDArray[np.int64], palette: Sequence[Kind],
                 "atom_style sphere",
                 "atom_modify map array sort 0 0",
                 "boundary f f f",
-                f"region box block -{half} {half} -{half} {half} -{half} {half}",
-                f"create_box {len(palette) + 1} box",
+                f"region box block {x0} {x1} {y0} {y1} {z0} {z1}",
+                f"create_box {len(scene.palette)} box",
                 "pair_style zero 1.0 nocoeff",
                 "pair_coeff * *",
             ]
         )
-        lmp.create_atoms(number, None, [1, *(kinds + 2).tolist()], centres.ravel().tolist())
-        lmp.numpy.extract_atom("radius")[:number] = radii
-        colours = [f"carrier {_words(CARRIER)}", *(f"kind{i} {_words(kind.colour)}" for i, kind in enumerate(palette))]
-        modify = " ".join(f"color {colour}" for colour in colours)
-        modify += " acolor 1 carrier " + " ".join(f"acolor {i + 2} kind{i}" for i in range(len(palette)))
+        lmp.create_atoms(number, None, (scene.kinds + 1).tolist(), scene.centres.ravel().tolist())
+        lmp.numpy.extract_atom("radius")[:number] = scene.radii
+        modify = " ".join(f"color kind{i} {_words(kind.colour)}" for i, kind in enumerate(scene.palette))
+        modify += "".join(f" acolor {i + 1} kind{i}" for i in range(len(scene.palette)))
+        # at zoom 1 LAMMPS draws twice the longest edge of the box
+        zoom = 2 * (scene.box[1] - scene.box[0]).max() / scene.width
+        polar, azimuth = scene.view
         lmp.command(
-            f'write_dump all image "{image}" type diameter size {SIZE} {SIZE} view 122 25 up 0 0 1 zoom 1.62 '
-            f"box no 0.0 axes no 0.0 0.0 shiny 0.15 fsaa yes ssao yes 4711 0.15 modify {modify} backcolor white"
+            f'write_dump all image "{image}" type diameter size {scene.size} {scene.size} view {polar} {azimuth} '
+            f"up 0 0 1 zoom {zoom} box no 0.0 axes no 0.0 0.0 shiny 0.15 fsaa yes ssao yes 4711 0.15 modify {modify} "
+            "backcolor white"
         )
 
 
@@ -131,29 +264,38 @@ def _words(colour: tuple[float, float, float]) -> str:
     return " ".join(f"{part:g}" for part in colour)
 
 
+def _mark(kind: Kind, label: str) -> Line2D:
+    return Line2D(
+        [],
+        [],
+        linestyle="none",
+        marker="o",
+        markersize=9,
+        markeredgecolor="0.35",
+        markeredgewidth=0.5,
+        color=kind.colour,
+        label=label,
+    )
+
+
 def _legend(counts: NDArray[np.int64]) -> list[Line2D]:
+    total = counts.sum()
     return [
-        Line2D(
-            [],
-            [],
-            linestyle="none",
-            marker="o",
-            markersize=9,
-            markeredgecolor="0.35",
-            markeredgewidth=0.5,
-            color=kind.colour,
-            label=f"{kind.name}: {count} ({count / counts.sum():.1%})",
-        )
-        for kind, count in zip(FATES, counts, strict=True)
+        _mark(kind, f"{kind.name}: {count} ({count / total:.1%})") for kind, count in zip(FATES, counts, strict=True)
     ]
+
+
+def _drawn(pixels: NDArray[np.float64]) -> tuple[slice, slice]:
+    """Rows and columns of an image without its white margins."""
+    places = np.argwhere((pixels < 0.99).any(axis=2))
+    (top, left), (bottom, right) = places.min(axis=0), places.max(axis=0)
+    return slice(top, bottom + 1), slice(left, right + 1)
 
 
 def _compose(image: Path, handles: list[Line2D], path: Path) -> None:
     """The drawing without its margins, above a legend if there is one."""
     pixels = plt.imread(image)[:, :, :3]
-    drawn = np.argwhere((pixels < 0.99).any(axis=2))
-    (top, left), (bottom, right) = drawn.min(axis=0), drawn.max(axis=0)
-    pixels = pixels[top : bottom + 1, left : right + 1]
+    pixels = pixels[_drawn(pixels)]
     height, width = pixels.shape[0] / SIZE * 6, pixels.shape[1] / SIZE * 6
     margin, foot = 0.1, 0.27 * len(handles) + 0.1 * bool(handles)
     total = (width + 2 * margin, height + 2 * margin + foot)
@@ -166,3 +308,67 @@ def _compose(image: Path, handles: list[Line2D], path: Path) -> None:
     with replace_file(path) as part:
         figure.savefig(part, dpi=SIZE / 6)
     plt.close(figure)
+
+
+#: width of a panel of four, the space between and around them, and below each for its words, inches
+_PANEL, _GAP, _FOOT = 3.6, 0.12, 0.35
+
+
+def _compose_moments(frames: list[Frame], images: list[Path], result: Result, path: Path) -> None:
+    """Two rows of two panels, cut alike; below each its time and how many grains are on and off, then the legend."""
+    drawings = [plt.imread(image)[:, :, :3] for image in images]
+    rows, columns = _drawn(np.minimum.reduce(drawings))
+    height = _PANEL * (rows.stop - rows.start) / (columns.stop - columns.start)
+    total = (2 * _PANEL + 3 * _GAP, 2 * (height + _FOOT + _GAP) + 0.4)
+    figure = plt.figure(figsize=total)
+    for index, (frame, pixels) in enumerate(zip(frames, drawings, strict=True)):
+        left = _GAP + (index % 2) * (_PANEL + _GAP)
+        bottom = total[1] - (1 + index // 2) * (height + _GAP) - (index // 2) * _FOOT
+        axes = figure.add_axes((left / total[0], bottom / total[1], _PANEL / total[0], height / total[1]))
+        axes.imshow(pixels, interpolation="lanczos")
+        axes.set_xlim(columns.start - 0.5, columns.stop - 0.5)
+        axes.set_ylim(rows.stop - 0.5, rows.start - 0.5)
+        axes.axis("off")
+        if index == 0:
+            _draw_velocity(axes, frame, result)
+        tied = int(np.count_nonzero(frame.tied))
+        words = (
+            f"{'abcd'[index]}) {frame.step * result.timestep * 1e6:.1f} µs: {tied} tied, "
+            f"{result.grains - tied} detached ({1 - tied / result.grains:.1%})"
+        )
+        place = ((left + _PANEL / 2) / total[0], (bottom - 0.06) / total[1])
+        figure.text(*place, words, ha="center", va="top", fontsize=10.5)
+    handles = [_mark(kind, kind.name) for kind in STATES]
+    figure.legend(handles=handles, loc="lower center", ncols=2, frameon=False, fontsize=10.5, handletextpad=0.3)
+    with replace_file(path) as part:
+        _save_small(figure, part, MOMENT_SIZE / _PANEL)
+    plt.close(figure)
+
+
+def _draw_velocity(axes: Axes, frame: Frame, result: Result) -> None:
+    """An arrow on the carrier along its velocity, with speed and angle; pixels count downwards."""
+    scene = _side_scene(frame)
+    pixels = scene.size / scene.width
+    offset = frame.carrier / frame.carrier_radius - scene.box.mean(axis=0)
+    middle = np.array([scene.size / 2 + offset[0] * pixels, scene.size / 2 - offset[2] * pixels])
+    angle = math.radians(result.angle)
+    half = 0.3 * pixels * np.array([math.cos(angle), math.sin(angle)])
+    arrow = {"arrowstyle": "-|>,head_width=0.35,head_length=0.7", "linewidth": 2.2, "color": "black"}
+    outline = [withStroke(linewidth=4.5, foreground="white")]
+    axes.annotate("", middle + half, middle - half, arrowprops={**arrow, "path_effects": outline})
+    axes.text(
+        *(middle - half - [0, 0.04 * pixels]),
+        f"{result.speed:g} m/s, {result.angle:g}°",
+        ha="center",
+        va="bottom",
+        fontsize=11,
+        path_effects=[withStroke(linewidth=3, foreground="white")],
+    )
+
+
+def _save_small(figure: Figure, path: Path, dpi: float) -> None:
+    """Save as PNG with a table of 256 colours, a quarter of the size; this choice of them keeps the pale grains."""
+    with BytesIO() as buffer:
+        figure.savefig(buffer, format="png", dpi=dpi)
+        image = Image.open(buffer).convert("RGB")
+        image.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)

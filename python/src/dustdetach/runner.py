@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from .errors import InvalidInput
 from .impact import Impact
 from .places import find_deck
 from .result import Result
@@ -52,9 +53,14 @@ def run(impact: Impact, *, comm: Any = None, events: Path | None = None, frames:
         Dispersion ratio with its shares, and the collision's time, peak acceleration and restitution.
 
     Raises:
-        InvalidInput: what only LAMMPS can judge, for instance a coverage that cannot be placed.
+        InvalidInput: ``events`` or ``frames`` that the method does not write, or what only LAMMPS can judge, for
+            instance a coverage that cannot be placed.
         LammpsMissing: LAMMPS, the plugin or the deck is not there.
     """
+    if events is not None and impact.method != "functions":
+        raise InvalidInput("events: a resolved run has none; allowed: with method functions")
+    if frames is not None and impact.method != "resolved":
+        raise InvalidInput("frames: without grains as atoms there are none; allowed: with method resolved")
     started = time.perf_counter()
     parameters = asdict(impact)
     variables = {name: parameters[name] for name in _VARIABLES_OF[impact.method]}

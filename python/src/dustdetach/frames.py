@@ -1,0 +1,100 @@
+"""Frames of a resolved impact: the carrier and its grains at one time, as LAMMPS' dump custom wrote them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InvalidInput
+
+#: what a frame must hold of each atom, and the type of the carrier
+COLUMNS = ("id", "type", "x", "y", "z", "radius", "c_tied")
+CARRIER_TYPE = 1
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A carrier and the grains that are still in the box.
+
+    Attributes:
+        step: the time step.
+        box: lower and upper corner of the box (2, 3), m.
+        carrier: centre of the carrier (3,), m.
+        carrier_radius: m.
+        centres: of the grains (N, 3), m.
+        radii: of the grains (N,), m.
+        tied: whether a chain of necks ties the grain to the carrier (N,).
+    """
+
+    step: int
+    box: NDArray[np.float64]
+    carrier: NDArray[np.float64]
+    carrier_radius: float
+    centres: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    tied: NDArray[np.bool_]
+
+
+def frame_sizes(path: Path) -> dict[int, int]:
+    """Number of atoms, the carrier among them, by the step of each frame in a file."""
+    sizes: dict[int, int] = {}
+    with open(path) as stream:
+        for line in stream:
+            if line.startswith("ITEM: TIMESTEP"):
+                step = int(next(stream))
+                next(stream)
+                sizes[step] = int(next(stream))
+    return sizes
+
+
+def read_frames(path: Path, steps: list[int]) -> list[Frame]:
+    """The frames of some steps, in the order of ``steps``.
+
+    Necks form with the first contact forces, after the frame of step 0 is written: its grains are all tied.
+
+    Raises:
+        InvalidInput: no frame of one of the steps, or a frame that is cut or lacks a column.
+    """
+    found = {}
+    with open(path) as stream:
+        for line in stream:
+            if line.startswith("ITEM: TIMESTEP") and (step := int(next(stream))) in steps:
+                try:
+                    found[step] = _read_frame(stream, step)
+                except (ValueError, StopIteration) as error:
+                    raise InvalidInput(f"{path}: frame of step {step}: {str(error) or 'the file is cut'}") from None
+    for step in steps:
+        if step not in found:
+            raise InvalidInput(f"{path}: no frame of step {step}")
+    return [found[step] for step in steps]
+
+
+def _read_frame(stream: Iterator[str], step: int) -> Frame:
+    next(stream)
+    count = int(next(stream))
+    next(stream)
+    box = np.array([next(stream).split() for _ in range(3)], dtype=float).T
+    names = next(stream).split()[2:]
+    missing = [name for name in COLUMNS if name not in names]
+    if missing:
+        raise ValueError(f"no column {missing[0]}")
+    rows = np.array([next(stream).split() for _ in range(count)], dtype=float)
+    column = {name: rows[:, names.index(name)] for name in COLUMNS}
+    places = np.column_stack([column[name] for name in "xyz"])
+    carriers = column["type"] == CARRIER_TYPE
+    if np.count_nonzero(carriers) != 1:
+        raise ValueError(f"{np.count_nonzero(carriers)} carriers where one is expected")
+    grains = ~carriers
+    return Frame(
+        step,
+        box,
+        places[carriers][0],
+        float(column["radius"][carriers][0]),
+        places[grains],
+        column["radius"][grains],
+        (column["c_tied"][grains] > 0) | (step == 0),
+    )
