@@ -155,13 +155,29 @@ def _impact(options: argparse.Namespace, _: bool) -> int:
     if options.picture is None:
         from .runner import run
 
-        result = run(impact)
+        result = run(impact, watch=_Watch())
     else:
         from .pictures import draw_impact
 
-        result = draw_impact(impact, _png(options.picture, "--picture"))
+        result = draw_impact(impact, _png(options.picture, "--picture"), _Watch())
     print(result.to_json() if options.json else _summary(result))
     return 0
+
+
+class _Watch:
+    """Simulated time on standard error: rewritten on a terminal, else a line every 10 us."""
+
+    def __init__(self) -> None:
+        self._terminal = sys.stderr.isatty()
+        self._told = 0
+
+    def __call__(self, seconds: float) -> None:
+        microseconds = seconds * 1e6
+        if self._terminal:
+            print(f"\r{microseconds:.1f} us\033[K", end="\r", file=sys.stderr, flush=True)
+        elif microseconds // 10 > self._told:
+            self._told = int(microseconds // 10)
+            print(f"{microseconds:.0f} us", file=sys.stderr, flush=True)
 
 
 def _summary(result: Result) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 
 from .errors import LammpsMissing
 from .places import find_deck, find_plugin, lammps_library
-from .runner import DECK
+from .runner import DECKS
 from .session import FIX_STYLE, load_plugin, open_lammps
 from .version import __version__
 
@@ -50,7 +50,8 @@ def examine() -> list[Finding]:
         findings += _lammps(lmp)
         lmp.close()
     try:
-        findings.append(Finding("decks", str(find_deck(DECK).parent)))
+        folders = {find_deck(deck).parent for deck in DECKS.values()}
+        findings.append(Finding("decks", ", ".join(sorted(map(str, folders)))))
     except LammpsMissing as error:
         findings.append(Finding("decks", str(error), ok=False))
     return findings

@@ -31,7 +31,7 @@ from .files import replace_file
 from .frames import Frame, frame_sizes, read_frames
 from .impact import Impact
 from .result import Result
-from .runner import run
+from .runner import Watch, run
 from .session import lammps_session
 from .texture import Texture, make_texture, read_texture
 
@@ -100,22 +100,27 @@ def draw_texture(texture: Texture, path: Path) -> None:
         _compose(image, [], path)
 
 
-def draw_impact(impact: Impact, path: Path) -> Result:
+def draw_impact(impact: Impact, path: Path, watch: Watch | None = None) -> Result:
     """Run an impact and draw it as PNG.
 
     With the functions: the carrier, every grain at its place and coloured by what became of it. Resolved: four moments.
+
+    Args:
+        impact: the parameters.
+        path: the picture.
+        watch: see `run`.
 
     Returns:
         The impact's result.
     """
     draw = _draw_moments if impact.method == "resolved" else _draw_fates
     with tempfile.TemporaryDirectory() as folder:
-        return draw(impact, path, Path(folder))
+        return draw(impact, path, Path(folder), watch)
 
 
-def _draw_fates(impact: Impact, path: Path, folder: Path) -> Result:
+def _draw_fates(impact: Impact, path: Path, folder: Path, watch: Watch | None) -> Result:
     events, grains, image = (folder / name for name in ("events.dump", "grains.txt", "carrier.png"))
-    result = run(impact, events=events)
+    result = run(impact, events=events, watch=watch)
     make_texture(impact, grains)
     texture = read_texture(grains)
     fates = read_fates(events, len(texture.diameters))
@@ -124,9 +129,9 @@ def _draw_fates(impact: Impact, path: Path, folder: Path) -> Result:
     return result
 
 
-def _draw_moments(impact: Impact, path: Path, folder: Path) -> Result:
+def _draw_moments(impact: Impact, path: Path, folder: Path, watch: Watch | None) -> Result:
     dump = folder / "frames.dump"
-    result = run(impact, frames=dump)
+    result = run(impact, frames=dump, watch=watch)
     draw_moments(dump, result, path)
     return result
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -40,7 +43,17 @@ _INITIAL, _NORMAL, _TANGENTIAL, _SOUTH, _NORTH, _COLLISIONS = 0, 2, 3, 4, 5, 8
 _CONTACT_TIME, _PEAK_ACCELERATION = 3, 4
 
 
-def run(impact: Impact, *, comm: Any = None, events: Path | None = None, frames: Path | None = None) -> Result:
+Watch = Callable[[float], None]
+
+
+def run(
+    impact: Impact,
+    *,
+    comm: Any = None,
+    events: Path | None = None,
+    frames: Path | None = None,
+    watch: Watch | None = None,
+) -> Result:
     """Run one impact with the method it names.
 
     Args:
@@ -48,6 +61,7 @@ def run(impact: Impact, *, comm: Any = None, events: Path | None = None, frames:
         comm: an mpi4py communicator for LAMMPS; all ranks of the process without one.
         events: a file for every detachment, as LAMMPS' dump local writes it (method ``functions``); see `pictures`.
         frames: a file for all grains every half microsecond, as LAMMPS' dump custom writes it (method ``resolved``).
+        watch: called about once a second, from another thread, with the time that has been simulated, s.
 
     Returns:
         Dispersion ratio with its shares, and the collision's time, peak acceleration and restitution.
@@ -71,7 +85,8 @@ def run(impact: Impact, *, comm: Any = None, events: Path | None = None, frames:
         variables["dump"] = f'"{frames}"'
     deck = find_deck(DECKS[impact.method])
     with lammps_session(variables, comm) as lmp:
-        lmp.file(str(deck))
+        with _watched(lmp, watch):
+            lmp.file(str(deck))
         read = _read_resolved if impact.method == "resolved" else _read_functions
         return Result(
             **parameters,
@@ -80,6 +95,24 @@ def run(impact: Impact, *, comm: Any = None, events: Path | None = None, frames:
             wall_seconds=time.perf_counter() - started,
             lammps_version=lmp.version(),
         )
+
+
+@contextmanager
+def _watched(lmp: Any, watch: Watch | None) -> Iterator[None]:
+    """Tell ``watch`` how far the run is while LAMMPS holds this thread."""
+    over = threading.Event()
+
+    def tell() -> None:
+        while watch and not over.wait(1.0):
+            watch(lmp.extract_global("ntimestep") * lmp.extract_global("dt"))
+
+    thread = threading.Thread(target=tell, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 def _read_functions(lmp: Any, impact: Impact) -> dict[str, Any]:
