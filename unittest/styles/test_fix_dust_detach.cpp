@@ -272,7 +272,7 @@ TEST(FixDustDetach, ARepeatedImpactActsOnWhatIsLeft)
 {
   Deck deck;
   deck.box();
-  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -4.0);
+  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -2.0);
   deck.wall_and_motion();
   dust(deck);
   deck("run 6000 post no");
