@@ -41,15 +41,11 @@ def frames(path: Path) -> Iterator[NDArray[np.float64]]:
             if line.startswith("ITEM: NUMBER"):
                 number = int(next(stream))
             elif line.startswith("ITEM: ATOMS"):
-                rows = np.array(
-                    [next(stream).split() for _ in range(number)], dtype=float
-                )
+                rows = np.array([next(stream).split() for _ in range(number)], dtype=float)
                 yield rows[np.argsort(rows[:, 0])]
 
 
-def grains(
-    frame: NDArray[np.float64], number: int
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def grains(frame: NDArray[np.float64], number: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Places relative to the carrier's centre (not a number where a grain has left the box), and who is tied."""
     places, tied = np.full((number, 3), np.nan), np.zeros(number, dtype=bool)
     rows = frame[frame[:, 1] == 2]
@@ -106,9 +102,7 @@ def examine(speed: float) -> tuple[dict[str, float], NDArray, NDArray, NDArray]:
 
 
 def main() -> None:
-    figure, axes = plt.subplots(
-        2, 2, figsize=(7.1, 5.0), layout="constrained", sharex=True, sharey=True
-    )
+    figure, axes = plt.subplots(2, 2, figsize=(7.1, 5.0), layout="constrained", sharex=True, sharey=True)
     rows = []
     middle = (BINS[:-1] + BINS[1:]) / 2
     for speed, panel in zip(SPEEDS, axes.flat, strict=True):

@@ -27,23 +27,14 @@ CASES = {
     "free flight": {"flight": "400000", "limit": "200000"},
     "contact": {"limit": "2300"},
     "contact, 60 degrees": {"limit": "2300", "angle": "60"},
-    "contact, 60 degrees, wall friction 0.3": {
-        "limit": "2300",
-        "angle": "60",
-        "wall_friction": "0.3",
-    },
+    "contact, 60 degrees, wall friction 0.3": {"limit": "2300", "angle": "60", "wall_friction": "0.3"},
 }
 
 
 def decks(folder: Path) -> dict[str, Path]:
     """in.impacts without its stop and its results, as it is and without the fix."""
     text = (ROOT / "lammps-inputs/in.impacts").read_text()
-    text = re.sub(
-        r"^(plugin load|fix +stop|variable +finished|write_dump).*\n",
-        "",
-        text,
-        flags=re.MULTILINE,
-    )
+    text = re.sub(r"^(plugin load|fix +stop|variable +finished|write_dump).*\n", "", text, flags=re.MULTILINE)
     without = re.sub(r"^fix +dust (.*&\n)*.*\n", "", text, flags=re.MULTILINE)
     without = re.sub(r" f_dust\S*", "", without)
     paths = {"with": folder / "in.with", "without": folder / "in.without"}
@@ -60,43 +51,20 @@ def command(deck: Path, variables: dict[str, str]) -> list[str]:
 
 
 def loop_time(deck: Path, variables: dict[str, str]) -> float:
-    done = subprocess.run(
-        command(deck, variables),
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=deck.parent,
-    )
+    done = subprocess.run(command(deck, variables), capture_output=True, text=True, check=True, cwd=deck.parent)
     return float(re.search(r"^Loop time of (\S+)", done.stdout, re.MULTILINE)[1])
 
 
 def instructions(deck: Path, variables: dict[str, str]) -> tuple[int, int]:
     """Instructions of the fix's post_force and of the whole time loop."""
     out = deck.parent / "callgrind.out"
-    subprocess.run(
-        [
-            "valgrind",
-            "--tool=callgrind",
-            f"--callgrind-out-file={out}",
-            *command(deck, variables),
-        ],
-        capture_output=True,
-        check=True,
-        cwd=deck.parent,
-    )
-    table = subprocess.run(
-        ["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)],
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
+    subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", *command(deck, variables)],
+                   capture_output=True, check=True, cwd=deck.parent)
+    table = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)],
+                           capture_output=True, text=True, check=True).stdout
 
     def count(function: str) -> int:
-        return int(
-            re.search(rf"^ *([\d,]+) .*{re.escape(function)}", table, re.MULTILINE)[
-                1
-            ].replace(",", "")
-        )
+        return int(re.search(rf"^ *([\d,]+) .*{re.escape(function)}", table, re.MULTILINE)[1].replace(",", ""))
 
     return count("FixDustDetach::post_force(int)"), count("Verlet::run(int)")
 
@@ -107,17 +75,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-    version = (
-        subprocess.run([LMP, "-h"], capture_output=True, text=True, check=True)
-        .stdout.splitlines()[1]
-        .split(" - ")[1]
-    )
-    result: dict = {
-        "machine": f"{cpu[1] if cpu else platform.processor()}, {os.cpu_count()} cores",
-        "lammps": version,
-        "compiler": "Release, as ./bootstrap build",
-        "repeats": args.repeat,
-    }
+    version = subprocess.run([LMP, "-h"], capture_output=True, text=True, check=True).stdout.splitlines()[1].split(" - ")[1]
+    result: dict = {"machine": f"{cpu[1] if cpu else platform.processor()}, {os.cpu_count()} cores", "lammps": version,
+                    "compiler": "Release, as ./bootstrap build", "repeats": args.repeat}
     with tempfile.TemporaryDirectory() as folder:
         paths = decks(Path(folder))
         for case, variables in CASES.items():
@@ -126,32 +86,15 @@ def main() -> None:
                 for which, path in paths.items():
                     times[which].append(loop_time(path, variables))
             with_fix, rest = (min(times[which]) for which in ("with", "without"))
-            row = {
-                "loop_seconds_with": with_fix,
-                "loop_seconds_without": rest,
-                "fix_share_of_loop": (with_fix - rest) / with_fix,
-                "fix_against_rest": (with_fix - rest) / rest,
-            }
+            row = {"loop_seconds_with": with_fix, "loop_seconds_without": rest,
+                   "fix_share_of_loop": (with_fix - rest) / with_fix, "fix_against_rest": (with_fix - rest) / rest}
             if shutil.which("valgrind"):
-                fix, loop = instructions(
-                    paths["with"],
-                    variables | {"limit": str(min(int(variables["limit"]), 3000))},
-                )
-                row |= {
-                    "instructions_fix": fix,
-                    "instructions_loop": loop,
-                    "instructions_fix_share": fix / loop,
-                }
+                fix, loop = instructions(paths["with"], variables | {"limit": str(min(int(variables["limit"]), 3000))})
+                row |= {"instructions_fix": fix, "instructions_loop": loop, "instructions_fix_share": fix / loop}
             result[case] = row
-            print(
-                f"{case}: the fix takes {100 * row['fix_share_of_loop']:.1f} % of the loop time, "
-                f"{row['fix_against_rest']:.2f} of the rest of the step"
-                + (
-                    f"; {100 * row['instructions_fix_share']:.1f} % of the instructions"
-                    if "instructions_fix" in row
-                    else ""
-                )
-            )
+            print(f"{case}: the fix takes {100 * row['fix_share_of_loop']:.1f} % of the loop time, "
+                  f"{row['fix_against_rest']:.2f} of the rest of the step"
+                  + (f"; {100 * row['instructions_fix_share']:.1f} % of the instructions" if "instructions_fix" in row else ""))
     if args.out:
         args.out.write_text(json.dumps(result, indent=1) + "\n")
 

@@ -35,6 +35,8 @@ DAMPINGS = (1.0, 0.2, 0.06)
 # these lists run to the deck's own limit; the others, to save hours, to this one (s): the ratio is final before 10 us
 MAIN = ("straight", "oblique")
 EARLIER = "20e-6"
+# this list has tangential = "integrate", which resolved runs do not know: theirs are those of the other lists
+FUNCTIONS_ALONE = "integrate"
 
 Pair = tuple[Result, Result]
 
@@ -57,22 +59,19 @@ def run(names: list[str], work: Path, jobs: int) -> None:
     }
     for name in names:
         print(name, flush=True)
+        method = "functions" if name == FUNCTIONS_ALONE else "both"
         command = [
             "sweep",
             str(HERE / f"{name}.toml"),
             "--method",
-            "both",
+            method,
             "--out",
             str(work / name),
             "--jobs",
             str(jobs),
         ]
-        environment = os.environ | {
-            "DUSTDETACH_INPUTS": str(decks(work / "decks", name))
-        }
-        subprocess.run(
-            [sys.executable, "-m", "dustdetach", *command], env=environment, check=True
-        )
+        environment = os.environ | {"DUSTDETACH_INPUTS": str(decks(work / "decks", name))}
+        subprocess.run([sys.executable, "-m", "dustdetach", *command], env=environment, check=True)
         shutil.copy(work / name / "results.csv", HERE / f"{name}.csv")
         (HERE / "machine.json").write_text(json.dumps(machine, indent=1) + "\n")
 
@@ -105,28 +104,31 @@ def processor() -> str:
 
 # --- reading ---------------------------------------------------------------------------------------------
 def tables() -> dict[str, list[Result]]:
-    return {
-        path.stem: read_csv(path)
-        for path in sorted(HERE.glob("*.csv"))
-        if path.with_suffix(".toml").exists()
-    }
+    return {path.stem: read_csv(path) for path in sorted(HERE.glob("*.csv")) if path.with_suffix(".toml").exists()}
 
 
 def key(row: Result, *without: str) -> tuple:
-    return tuple(
-        getattr(row, name) for name in PARAMETERS if name not in ("method", *without)
-    )
+    return tuple(getattr(row, name) for name in PARAMETERS if name not in ("method", *without))
 
 
 def pairs(rows: Iterable[Result]) -> list[Pair]:
     """Functions and resolved run of the same impact."""
     rows = list(rows)
     functions = {key(row): row for row in rows if row.method == "functions"}
-    return [
-        (functions[key(row)], row)
-        for row in rows
-        if row.method == "resolved" and key(row) in functions
-    ]
+    return [(functions[key(row)], row) for row in rows if row.method == "resolved" and key(row) in functions]
+
+
+def integrated(rows: Iterable[Result]) -> list[Pair]:
+    """Functions with `tangential integrate` and the resolved run of the same impact."""
+    rows = list(rows)
+    resolved = {key(row, "tangential"): row for row in rows if row.method == "resolved"}
+    followed = [row for row in rows if row.method == "functions" and row.tangential == "integrate"]
+    return [(row, resolved[key(row, "tangential")]) for row in followed if key(row, "tangential") in resolved]
+
+
+def estimated(data: dict[str, list[Result]]) -> list[Result]:
+    """All cases but those of `tangential integrate`."""
+    return unique(row for part in data.values() for row in part if row.tangential == "estimate")
 
 
 def unique(rows: Iterable[Result]) -> list[Result]:
@@ -140,13 +142,7 @@ def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[str
     yield "| " + " | ".join(head) + " |"
     yield "|" + "---|" * len(head)
     for row in rows:
-        yield (
-            "| "
-            + " | ".join(
-                f"{cell:.4f}" if isinstance(cell, float) else str(cell) for cell in row
-            )
-            + " |"
-        )
+        yield ("| " + " | ".join(f"{cell:.4f}" if isinstance(cell, float) else str(cell) for cell in row) + " |")
     yield ""
 
 
@@ -164,22 +160,16 @@ def agreement(label: str, compared: list[Pair]) -> list[object]:
 
 
 def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
-    rows = unique(row for part in data.values() for row in part)
+    rows = estimated(data)
     plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
     smooth = [row for row in plain if row.wall_friction == 0.05]
 
     yield "# Detachment functions against grain-resolved runs"
     yield ""
     resolved = [row for row in rows if row.method == "resolved"]
-    ends = {
-        end: sum(row.end == end for row in resolved)
-        for end in sorted({row.end for row in resolved})
-    }
+    ends = {end: sum(row.end == end for row in resolved) for end in sorted({row.end for row in resolved})}
     yield f"{len(resolved)} resolved impacts of {resolved[0].grains} grains, LAMMPS {resolved[0].lammps_version}; ended by "
-    yield (
-        ", ".join(f"*{end}*: {count}" for end, count in ends.items())
-        + ". Written by `impacts.py compare`."
-    )
+    yield (", ".join(f"*{end}*: {count}" for end, count in ends.items()) + ". Written by `impacts.py compare`.")
     yield ""
 
     yield "## Agreement"
@@ -201,23 +191,12 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     for damping in DAMPINGS:
         damped = pairs(row for row in rows if row.grain_damping == damping)
         straight = [pair for pair in damped if pair[0].angle == 90]
-        oblique = [
-            pair
-            for pair in damped
-            if pair[0].angle != 90 and pair[0].wall_friction == 0.05
-        ]
+        oblique = [pair for pair in damped if pair[0].angle != 90 and pair[0].wall_friction == 0.05]
         lines.append(agreement(f"straight, zeta {damping:g}", straight))
         if oblique:
             lines.append(agreement(f"oblique, zeta {damping:g}", oblique))
-    both = {
-        key(pair[0], "grain_damping")
-        for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])
-    }
-    same = [
-        pair
-        for pair in pairs(smooth)
-        if pair[0].grain_damping == 1 and key(pair[0], "grain_damping") in both
-    ]
+    both = {key(pair[0], "grain_damping") for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])}
+    same = [pair for pair in pairs(smooth) if pair[0].grain_damping == 1 and key(pair[0], "grain_damping") in both]
     lines.append(agreement("zeta 1, cases of the weaker dampings alone", same))
     rough = pairs(row for row in plain if row.wall_friction == 0.3)
     lines.append(
@@ -227,30 +206,26 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
         )
     )
     yield from table(head, lines)
+    yield "The same with `tangential integrate`, which follows each grain's own slide and roll:"
+    yield ""
+    followed = integrated(row for part in data.values() for row in part)
+    oblique = [pair for pair in followed if pair[0].angle != 90]
+    lines = [
+        agreement("straight, zeta 1", [pair for pair in followed if pair[0].angle == 90]),
+        agreement("oblique, zeta 1", [pair for pair in oblique if pair[0].wall_friction == 0.05]),
+        agreement("oblique, zeta 1, wall friction 0.3", [pair for pair in oblique if pair[0].wall_friction == 0.3]),
+    ]
+    yield from table(head, lines)
 
     yield "## What the paper says"
     yield ""
-    yield from paper(
-        [row for row in smooth if row.method == "resolved" and row.grain_damping == 1]
-    )
+    yield from paper([row for row in smooth if row.method == "resolved" and row.grain_damping == 1])
     yield "## Straight impacts, zeta 1"
     yield ""
-    yield from cases(
-        [
-            pair
-            for pair in pairs(smooth)
-            if pair[0].angle == 90 and pair[0].grain_damping == 1
-        ]
-    )
+    yield from cases([pair for pair in pairs(smooth) if pair[0].angle == 90 and pair[0].grain_damping == 1])
     yield "## Oblique impacts, zeta 1"
     yield ""
-    yield from cases(
-        [
-            pair
-            for pair in pairs(smooth)
-            if pair[0].angle != 90 and pair[0].grain_damping == 1
-        ]
-    )
+    yield from cases([pair for pair in pairs(smooth) if pair[0].angle != 90 and pair[0].grain_damping == 1])
     yield "## Grain contacts that ring"
     yield ""
     yield from dampings(smooth)
@@ -268,9 +243,7 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     for name, parameter in VARIANTS.items():
         yield f"## {name.capitalize()}"
         yield ""
-        yield from variants(
-            [row for row in rows if row.method == "resolved"], plain, parameter
-        )
+        yield from variants([row for row in rows if row.method == "resolved"], plain, parameter)
 
 
 def paper(resolved: list[Result]) -> Iterator[str]:
@@ -318,9 +291,7 @@ def paper(resolved: list[Result]) -> Iterator[str]:
             falling(found[::-1]),
         )
     for speed in (4, 8, 12):
-        found = shares(
-            "dispersion_ratio", [(0.7, angle, speed) for angle in (90, 75, 60, 45, 30)]
-        )
+        found = shares("dispersion_ratio", [(0.7, angle, speed) for angle in (90, 75, 60, 45, 30)])
         check(
             f"ratio, {speed} m/s, 90 / 75 / 60 / 45 / 30°",
             "falling",
@@ -346,9 +317,7 @@ def cases(compared: list[Pair]) -> Iterator[str]:
         "end",
         "s",
     ]
-    compared = sorted(
-        compared, key=lambda pair: (pair[0].restitution, -pair[0].angle, pair[0].speed)
-    )
+    compared = sorted(compared, key=lambda pair: (pair[0].restitution, -pair[0].angle, pair[0].speed))
     yield from table(
         head,
         (
@@ -370,9 +339,7 @@ def dampings(smooth: list[Result]) -> Iterator[str]:
     for row in smooth:
         if row.method == "resolved":
             by_case[key(row, "grain_damping")][row.grain_damping] = row
-    functions = {
-        key(row, "grain_damping"): row for row in smooth if row.method == "functions"
-    }
+    functions = {key(row, "grain_damping"): row for row in smooth if row.method == "functions"}
     lines = [
         [
             f"{found[1.0].restitution:g}",
@@ -381,9 +348,7 @@ def dampings(smooth: list[Result]) -> Iterator[str]:
             functions[case].dispersion_ratio,
         ]
         + [found[damping].dispersion_ratio for damping in DAMPINGS]
-        for case, found in sorted(
-            by_case.items(), key=lambda item: (item[0][2], -item[0][1], item[0][0])
-        )
+        for case, found in sorted(by_case.items(), key=lambda item: (item[0][2], -item[0][1], item[0][0]))
         if all(damping in found for damping in DAMPINGS)
     ]
     yield from table(
@@ -404,9 +369,7 @@ def best_angle(rough: list[Pair]) -> Iterator[str]:
     lines = []
     for speed in sorted({f.speed for f, _ in rough}):
         at = [pair for pair in rough if pair[0].speed == speed]
-        best = [
-            max(at, key=lambda pair, k=k: pair[k].dispersion_ratio)[k] for k in (0, 1)
-        ]
+        best = [max(at, key=lambda pair, k=k: pair[k].dispersion_ratio)[k] for k in (0, 1)]
         lines.append(
             [
                 f"{speed:g}",
@@ -416,9 +379,7 @@ def best_angle(rough: list[Pair]) -> Iterator[str]:
     yield from table(["v (m/s)", "functions", "resolved"], lines)
 
 
-def variants(
-    resolved: list[Result], plain: list[Result], parameter: str
-) -> Iterator[str]:
+def variants(resolved: list[Result], plain: list[Result], parameter: str) -> Iterator[str]:
     base = {key(row, parameter): row for row in plain if row.method == "resolved"}
     lines = []
     for row in resolved:
@@ -430,9 +391,7 @@ def variants(
                 f"{row.speed:g}",
                 f"{getattr(row, parameter):g}",
             ]
-            lines.append(
-                [*where, partner.dispersion_ratio, row.dispersion_ratio, difference]
-            )
+            lines.append([*where, partner.dispersion_ratio, row.dispersion_ratio, difference])
     lines.sort(key=lambda line: [float(cell) for cell in line[:3]])
     head = [
         "e",
@@ -450,14 +409,12 @@ def variants(
 
 # --- the figures -----------------------------------------------------------------------------------------
 def figures(data: dict[str, list[Result]]) -> None:
-    rows = unique(row for part in data.values() for row in part)
+    rows = estimated(data)
     plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
     damped = [row for row in plain if row.grain_damping == 1]
     smooth = [row for row in damped if row.wall_friction == 0.05]
 
-    def with_curves(
-        chosen: list[Result], belongs: Callable[[Result], bool], name: str
-    ) -> None:
+    def with_curves(chosen: list[Result], belongs: Callable[[Result], bool], name: str) -> None:
         for path in draw([row for row in chosen if belongs(row)], HERE / name):
             if path.suffix == ".svg":
                 path.unlink()
@@ -466,13 +423,7 @@ def figures(data: dict[str, list[Result]]) -> None:
     with_curves(smooth, lambda row: row.restitution == 0.7, "figure5")
     with_curves(damped, lambda row: row.wall_friction == 0.3, "friction")
     scatter(pairs(smooth))
-    ringing(
-        [
-            row
-            for row in plain
-            if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7
-        ]
-    )
+    ringing([row for row in plain if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7])
 
 
 def scatter(compared: list[Pair]) -> None:
@@ -482,9 +433,7 @@ def scatter(compared: list[Pair]) -> None:
         ("straight", "#0072B2", [pair for pair in compared if pair[0].angle == 90]),
         ("oblique", "#D55E00", [pair for pair in compared if pair[0].angle != 90]),
     ):
-        x, y = zip(
-            *((f.dispersion_ratio, r.dispersion_ratio) for f, r in chosen), strict=True
-        )
+        x, y = zip(*((f.dispersion_ratio, r.dispersion_ratio) for f, r in chosen), strict=True)
         axes.plot(x, y, "o", color=colour, markerfacecolor="white", label=label)
     axes.set(
         xlabel="Dispersion ratio, detachment functions",
@@ -498,14 +447,10 @@ def scatter(compared: list[Pair]) -> None:
 def ringing(rows: list[Result]) -> None:
     figure, axes = plt.subplots(figsize=(5.0, 3.6), layout="constrained")
     functions = sorted(
-        (row.speed, row.dispersion_ratio)
-        for row in rows
-        if row.method == "functions" and row.grain_damping == 1
+        (row.speed, row.dispersion_ratio) for row in rows if row.method == "functions" and row.grain_damping == 1
     )
     axes.plot(*zip(*functions, strict=True), color="0.3", label="functions")
-    for damping, colour, marker in zip(
-        DAMPINGS, ("#0072B2", "#D55E00", "#009E73"), "os^", strict=True
-    ):
+    for damping, colour, marker in zip(DAMPINGS, ("#0072B2", "#D55E00", "#009E73"), "os^", strict=True):
         found = sorted(
             (row.speed, row.dispersion_ratio)
             for row in rows
@@ -535,24 +480,18 @@ def save(figure: plt.Figure, name: str) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True, dest="command")
     running = commands.add_parser("run")
     running.add_argument("names", nargs="*", metavar="NAME")
-    running.add_argument(
-        "--work", type=Path, required=True, help="folder of the sweeps"
-    )
+    running.add_argument("--work", type=Path, required=True, help="folder of the sweeps")
     running.add_argument("--jobs", type=int, default=2)
     commands.add_parser("compare")
     options = parser.parse_args()
     if options.command == "run":
         known = sorted(path.stem for path in HERE.glob("*.toml"))
         if unknown := [name for name in options.names if name not in known]:
-            parser.error(
-                f"{unknown[0]}: no such list of cases; allowed: {', '.join(known)}"
-            )
+            parser.error(f"{unknown[0]}: no such list of cases; allowed: {', '.join(known)}")
         run(options.names or known, options.work, options.jobs)
     else:
         data = tables()

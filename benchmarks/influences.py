@@ -75,13 +75,9 @@ def run(variant: str, speed: int) -> dict[str, str]:
         }.items():
             command += ["-var", name, value]
         started = time.perf_counter()
-        out = subprocess.run(
-            command, capture_output=True, text=True, check=True, cwd=folder
-        ).stdout
+        out = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder).stdout
     end = re.search(r"^end: (\w+) after (\S+) us \(last neck (\S+),", out, re.MULTILINE)
-    ratio = re.search(
-        r"^dispersion ratio (\S+): south (\S+), north (\S+)", out, re.MULTILINE
-    )
+    ratio = re.search(r"^dispersion ratio (\S+): south (\S+), north (\S+)", out, re.MULTILINE)
     seconds = f"{time.perf_counter() - started:.0f}"
     return dict(
         zip(
@@ -93,20 +89,14 @@ def run(variant: str, speed: int) -> dict[str, str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     rows = list(csv.DictReader(TABLE.open())) if TABLE.exists() else []
-    wanted = [
-        (name, speed) for name, (_, _, speeds) in VARIANTS.items() for speed in speeds
-    ]
+    wanted = [(name, speed) for name, (_, _, speeds) in VARIANTS.items() for speed in speeds]
     done = {(row["variant"], int(row["speed"])) for row in rows}
     with ThreadPoolExecutor(options.jobs) as pool:
-        for row in pool.map(
-            lambda case: run(*case), [case for case in wanted if case not in done]
-        ):
+        for row in pool.map(lambda case: run(*case), [case for case in wanted if case not in done]):
             rows.append(row)
             print(", ".join(row.values()), flush=True)
             rows.sort(key=lambda row: wanted.index((row["variant"], int(row["speed"]))))

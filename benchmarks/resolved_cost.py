@@ -79,9 +79,7 @@ def count_contacts(text: str) -> str:
         "compute touching all contact/atom\ncompute touches all reduce sum c_touching\nthermo 50\n"
         "thermo_style custom step c_touches\nthermo_modify lost ignore norm no\n"
     )
-    return text.replace(
-        'print           "Collision"', counting + 'print           "Collision"'
-    )
+    return text.replace('print           "Collision"', counting + 'print           "Collision"')
 
 
 def first_microseconds(text: str, skin: float) -> str:
@@ -116,9 +114,7 @@ class Run:
         for name, value in (variables or {}).items():
             words += ["-var", name, value]
         with open(deck.with_name(f"{deck.name}.out"), "w+") as out:
-            process = subprocess.Popen(
-                words, stdout=out, stderr=subprocess.STDOUT, cwd=deck.parent
-            )
+            process = subprocess.Popen(words, stdout=out, stderr=subprocess.STDOUT, cwd=deck.parent)
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
             out.seek(0)
@@ -128,18 +124,11 @@ class Run:
         self.process_seconds = usage.ru_utime + usage.ru_stime
         self.megabytes = usage.ru_maxrss / 1024
         self.steps = 0
-        self.wall_seconds = self.loop_seconds = self.pair_seconds = (
-            self.neigh_seconds
-        ) = 0.0
+        self.wall_seconds = self.loop_seconds = self.pair_seconds = self.neigh_seconds = 0.0
         for loop in re.split(r"^Loop time of ", self.text, flags=re.MULTILINE)[1:]:
-            seconds, steps = re.match(
-                r"(\S+) on \d+ procs for (\d+) steps", loop
-            ).groups()
+            seconds, steps = re.match(r"(\S+) on \d+ procs for (\d+) steps", loop).groups()
             use = re.search(r"^([\d.]+)% CPU use", loop, re.MULTILINE)
-            pair, neigh = (
-                re.search(rf"^{section} *\| *(\S+)", loop, re.MULTILINE)
-                for section in ("Pair", "Neigh")
-            )
+            pair, neigh = (re.search(rf"^{section} *\| *(\S+)", loop, re.MULTILINE) for section in ("Pair", "Neigh"))
             share = float(use[1]) / 100 if use else 1.0  # not said with post no
             self.steps += int(steps)
             self.wall_seconds += float(seconds)
@@ -157,10 +146,7 @@ def fastest(variants: dict, repeat: int) -> dict[str, list[Run]]:
     for _ in range(repeat):
         for name, (deck, variables) in variants.items():
             runs[name].append(Run(deck, variables))
-    return {
-        name: sorted(made, key=lambda run: run.loop_seconds)
-        for name, made in runs.items()
-    }
+    return {name: sorted(made, key=lambda run: run.loop_seconds) for name, made in runs.items()}
 
 
 def write(folder: Path, name: str, text: str) -> Path:
@@ -192,11 +178,7 @@ def pair_instructions(deck: Path, variables: dict[str, str]) -> int:
         text=True,
         check=True,
     ).stdout
-    return int(
-        re.search(r"^ *([\d,]+) .*PairGranular::compute\(int", table, re.MULTILINE)[
-            1
-        ].replace(",", "")
-    )
+    return int(re.search(r"^ *([\d,]+) .*PairGranular::compute\(int", table, re.MULTILINE)[1].replace(",", ""))
 
 
 def contact(folder: Path, repeat: int) -> dict:
@@ -205,13 +187,8 @@ def contact(folder: Path, repeat: int) -> dict:
     result: dict = {}
     for case, cut in (("free flight at rest", at_rest), ("collision", collision)):
         variables = {"rest": str(FLIGHT)}
-        decks = {
-            name: write(folder, f"{case}.{k}", cut(words))
-            for k, (name, words) in enumerate(models.items())
-        }
-        runs = fastest(
-            {name: (deck, variables) for name, deck in decks.items()}, repeat
-        )
+        decks = {name: write(folder, f"{case}.{k}", cut(words)) for k, (name, words) in enumerate(models.items())}
+        runs = fastest({name: (deck, variables) for name, deck in decks.items()}, repeat)
         result[case] = {}
         for name, made in runs.items():
             run = made[0]
@@ -223,10 +200,7 @@ def contact(folder: Path, repeat: int) -> dict:
                     variables,
                 )
                 table = counted.text.split("Collision")[1]
-                sums = [
-                    float(row)
-                    for row in re.findall(r"^ +\d+ +(\d+) *$", table, re.MULTILINE)
-                ]
+                sums = [float(row) for row in re.findall(r"^ +\d+ +(\d+) *$", table, re.MULTILINE)]
                 contacts = sum(sums) / len(sums) / 2  # both atoms of a pair count it
             pair = min(other.pair_seconds for other in made)
             row = {
@@ -235,18 +209,11 @@ def contact(folder: Path, repeat: int) -> dict:
                 "steps": run.steps,
                 "pair_seconds": pair,
                 "ns_per_contact_and_step": 1e9 * pair / (run.steps * contacts),
-                "ns_slowest_repeat": 1e9
-                * max(other.pair_seconds for other in made)
-                / (run.steps * contacts),
+                "ns_slowest_repeat": 1e9 * max(other.pair_seconds for other in made) / (run.steps * contacts),
             }
             if shutil.which("valgrind") and cut is at_rest:
-                none, some = (
-                    pair_instructions(decks[name], {"rest": str(steps)})
-                    for steps in (0, COUNTED)
-                )
-                row["instructions_per_contact_and_step"] = (some - none) / (
-                    COUNTED * contacts
-                )
+                none, some = (pair_instructions(decks[name], {"rest": str(steps)}) for steps in (0, COUNTED))
+                row["instructions_per_contact_and_step"] = (some - none) / (COUNTED * contacts)
             result[case][name] = row
             print(
                 f"{case}, {name}: {row['ns_per_contact_and_step']:.0f} ns per contact and step, {contacts:.0f} contacts"
@@ -262,12 +229,7 @@ def contact(folder: Path, repeat: int) -> dict:
             if key in ours:
                 result[case][f"ratio of {key.split('_')[0]}"] = ours[key] / theirs[key]
         print(
-            f"{case}: "
-            + ", ".join(
-                f"{key} {value:.2f}"
-                for key, value in result[case].items()
-                if "ratio" in key
-            ),
+            f"{case}: " + ", ".join(f"{key} {value:.2f}" for key, value in result[case].items() if "ratio" in key),
             flush=True,
         )
     return result
@@ -275,14 +237,11 @@ def contact(folder: Path, repeat: int) -> dict:
 
 def impact(folder: Path, repeat: int) -> dict:
     many = (INPUTS / "in.impacts").read_text()
-    many = replace(
-        many, r"^variable +speed +atom .*", "variable speed atom v_fastest", 1
-    )  # all with the same
+    many = replace(many, r"^variable +speed +atom .*", "variable speed atom v_fastest", 1)  # all with the same
     again = write(
         folder,
         "again",
-        f"variable again loop {AT_ONCE}\nlabel one\nclear\ninclude {INPUTS / 'in.impact'}\n"
-        "next again\njump SELF one\n",
+        f"variable again loop {AT_ONCE}\nlabel one\nclear\ninclude {INPUTS / 'in.impact'}\nnext again\njump SELF one\n",
     )
     resolved = write(folder, "resolved", (INPUTS / "in.impact.resolved").read_text())
     result: dict = {}
@@ -340,25 +299,12 @@ def impact(folder: Path, repeat: int) -> dict:
 
 def skin(folder: Path, repeat: int) -> dict:
     text = (INPUTS / "in.impact.resolved").read_text()
-    decks = {
-        str(wide): (write(folder, f"skin{k}", first_microseconds(text, wide)), {})
-        for k, wide in enumerate(SKINS)
-    }
+    decks = {str(wide): (write(folder, f"skin{k}", first_microseconds(text, wide)), {}) for k, wide in enumerate(SKINS)}
     result = {}
     for name, made in fastest(decks, repeat).items():
         run = made[0]
-        builds = sum(
-            int(number)
-            for number in re.findall(
-                r"^Neighbor list builds = (\d+)", run.text, re.MULTILINE
-            )
-        )
-        pairs = [
-            int(number)
-            for number in re.findall(
-                r"^Total # of neighbors = (\d+)", run.text, re.MULTILINE
-            )
-        ]
+        builds = sum(int(number) for number in re.findall(r"^Neighbor list builds = (\d+)", run.text, re.MULTILINE))
+        pairs = [int(number) for number in re.findall(r"^Total # of neighbors = (\d+)", run.text, re.MULTILINE)]
         result[name] = {
             "ms_per_step": 1e3 * run.loop_seconds / run.steps,
             "list_builds": builds,
@@ -382,16 +328,12 @@ PARTS = {"contact": contact, "impact": impact, "skin": skin}
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--repeat", type=int, default=5)
-    parser.add_argument(
-        "--parts", default=",".join(PARTS), help="the others keep their results in FILE"
-    )
+    parser.add_argument("--parts", default=",".join(PARTS), help="the others keep their results in FILE")
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     version = (
-        subprocess.run([LMP, "-h"], capture_output=True, text=True, check=True)
-        .stdout.splitlines()[1]
-        .split(" - ")[1]
+        subprocess.run([LMP, "-h"], capture_output=True, text=True, check=True).stdout.splitlines()[1].split(" - ")[1]
     )
     result: dict = {
         "machine": f"{cpu[1] if cpu else platform.processor()}, {os.cpu_count()} cores",
