@@ -6,6 +6,8 @@
 
 #include "geometry.h"
 #include "jkr.h"
+#include "motion_bound.h"
+#include "surface_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +57,8 @@ template <typename Visit> void each_bit(uint64_t word, Visit visit)
 /* ---------------------------------------------------------------------- */
 
 DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria) :
-    criteria(criteria), friction(material.friction), sites(texture.grains.size())
+    criteria(criteria), friction(material.friction), rolling(material.rolling), carrier_radius(texture.carrier_radius),
+    sites(texture.grains.size())
 {
   const int n = grains();
   std::vector<int> order(n);
@@ -128,6 +131,7 @@ void Collision::begin(const double *velocity)
   nslid = nrolled = 0;
   start.clear();
   history.clear();
+  record.clear();
   window.along = -1.0;
   window.width = 1.0e-3;
 }
@@ -138,6 +142,7 @@ bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, 
                      Workspace &work)
 {
   time += dt;
+  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(a, dt);
   const double size2 = dot(a, a);
   Split s = {INF, INF};
   if (!history.empty() && size2 <= history.peak2()) {
@@ -334,12 +339,25 @@ double Collision::peak_acceleration() const
 bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint64_t *attached,
                     Workspace &work)
 {
+  const size_t before = work.detached.size();
+  if (df.criteria.tangential == Criteria::INTEGRATE)
+    integrate(df, attached, work);
+  else if (df.criteria.tangential != Criteria::OFF)
+    estimate(df, velocity, attached, work);
+  return work.detached.size() > before;
+}
+
+/* ----------------------------------------------------------------------
+   Eqs. 3b and 4-6
+------------------------------------------------------------------------- */
+
+void Collision::estimate(const DetachmentFunctions &df, const double *velocity, uint64_t *attached, Workspace &work)
+{
   const double dv[3] = {v0[0] - velocity[0], v0[1] - velocity[1], v0[2] - velocity[2]};
-  if (df.criteria.tangential == Criteria::OFF || dot(dv, dv) <= df.slow2) return false;
+  if (dot(dv, dv) <= df.slow2) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   const double mu = df.criteria.tangential == Criteria::ESTIMATE ? df.friction : 0.0;
-  const size_t before = work.detached.size();
   size_t hint = 0;
   for (int patch = 0; patch < df.words(); patch++) {
     each_bit(attached[patch], [&](int k) {
@@ -364,7 +382,49 @@ bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint6
       leave(df, {bit, TANGENTIAL, {kept * vt[0], kept * vt[1], kept * vt[2]}}, nullptr, attached, work);
     });
   }
-  return work.detached.size() > before;
+}
+
+/* ----------------------------------------------------------------------
+   each grain's own motion over the collision, so many at a time
+------------------------------------------------------------------------- */
+
+void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Workspace &work)
+{
+  const MotionBound bound(record, peak_acceleration(), df.rolling, df.carrier_radius);
+  if (!bound.any_may_leave(df.least, df.largest)) return;
+  if (start.empty()) start.assign(attached, attached + df.words());
+
+  SurfaceMotion motion(df.friction, df.rolling);
+  int bits[SurfaceMotion::LANES];
+  // a collision of few time steps is followed in more
+  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / record.spans().size()) + 1;
+  const auto run = [&]() {
+    for (const ImpulseRecord::Span &span : record.spans()) {
+      const double *j = span.impulse, per_time = 1.0 / span.duration;
+      const double mean[3] = {j[0] * per_time, j[1] * per_time, j[2] * per_time};
+      for (int k = 0; k < parts; k++) motion.advance(mean, span.duration / parts);
+    }
+    motion.release();
+    for (int k = 0; k < motion.grains(); k++)
+      if (!motion.attached(k))
+        leave(df, {bits[k], TANGENTIAL, {motion.velocity(k, 0), motion.velocity(k, 1), motion.velocity(k, 2)}}, nullptr, attached,
+              work);
+    motion.clear();
+  };
+
+  for (int patch = 0; patch < df.words(); patch++)
+    each_bit(attached[patch], [&](int k) {
+      const int bit = patch * PATCH + k;
+      const DetachmentFunctions::Site &site = df.sites[bit];
+      const auto [turn, centrifugal] = bound.of(site.n, site.hold, site.shell);
+      const double needed = site.hold - centrifugal;
+      const auto excess = [&, turn = turn](const double *a) { return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed; };
+      if (needed >= 0.0 && !history.any(excess, 1.0 + turn)) return;
+      bits[motion.grains()] = bit;
+      motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius);
+      if (motion.full()) run();
+    });
+  run();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -382,23 +442,24 @@ int Collision::lost_north(const DetachmentFunctions &df, const double *velocity,
 }
 
 /* ----------------------------------------------------------------------
-   v0, time, counts, sizes; then start and history. The window is opened anew, which changes no result.
+   v0, time, counts, sizes; then start, history and record. The window is opened anew, which changes no result.
 ------------------------------------------------------------------------- */
 
-static constexpr int PACKED_SCALARS = 8;
+static constexpr int PACKED_SCALARS = 9;
 
 int Collision::packed_size() const
 {
-  return static_cast<int>(PACKED_SCALARS + start.size() + history.numbers().size());
+  return static_cast<int>(PACKED_SCALARS + start.size() + history.numbers().size()) + record.packed_size();
 }
 
 void Collision::pack(double *buf) const
 {
   const std::vector<double> &numbers = history.numbers();
-  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), double(start.size()), double(numbers.size())})
+  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), double(start.size()), double(numbers.size()),
+                   double(record.packed_size())})
     *buf++ = x;
   std::memcpy(buf, start.data(), start.size() * sizeof(uint64_t));
-  std::copy(numbers.begin(), numbers.end(), buf + start.size());
+  record.pack(std::copy(numbers.begin(), numbers.end(), buf + start.size()));
 }
 
 void Collision::unpack(const double *buf)
@@ -411,4 +472,5 @@ void Collision::unpack(const double *buf)
   std::memcpy(start.data(), buf + PACKED_SCALARS, start.size() * sizeof(uint64_t));
   const double *p = buf + PACKED_SCALARS + start.size();
   history.assign(p, p + static_cast<size_t>(buf[7]));
+  record.unpack(p + static_cast<size_t>(buf[7]), static_cast<int>(buf[8]));
 }

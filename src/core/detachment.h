@@ -6,6 +6,7 @@
 #define DUST_CORE_DETACHMENT_H
 
 #include "acceleration_history.h"
+#include "impulse_record.h"
 #include "texture.h"
 
 #include <cstdint>
@@ -31,7 +32,8 @@ enum Mode { NORMAL, TANGENTIAL, SLIDING, ROLLING, NMODES };
 /*! What makes grains detach */
 struct Criteria {
   bool ibrahim = false;       //!< sliding and rolling detach too (they are counted always)
-  enum { OFF, FRICTIONLESS, ESTIMATE } tangential = ESTIMATE;    //!< no Eq. 3b, Eq. 4 alone, Eqs. 4-6
+  //! no Eq. 3b, Eq. 4 alone, Eqs. 4-6, or each grain's own motion (surface_motion.h)
+  enum { OFF, FRICTIONLESS, ESTIMATE, INTEGRATE } tangential = ESTIMATE;
 };
 
 /*! Material of the grains and of their contact with the carrier, in one consistent set of units */
@@ -40,6 +42,7 @@ struct Material {
   double gamma;       //!< surface energy, pull-off force 3 pi gamma R_12
   double modulus;     //!< combined modulus E* of grain and carrier
   double friction;    //!< mu_f
+  double rolling = 0.15;    //!< theta_crit; only INTEGRATE uses it
 };
 
 /*! One texture made ready for evaluation; shared by all carriers, never changed */
@@ -64,7 +67,8 @@ class DetachmentFunctions {
   friend class Collision;
 
   Criteria criteria;
-  double friction;
+  double friction, rolling;
+  double carrier_radius;
   double mass;
   double least, largest;            // of hold
   double slow2;                     // no tangential lift-off below this square of a velocity
@@ -137,7 +141,7 @@ class Collision {
   bool step(const DetachmentFunctions &functions, const double *acceleration, double dt, uint64_t *attached,
             Workspace &work);
 
-  /*! Lift-off tangential, with the velocity at the first step without contact force: Eqs. 3b and 4-6 */
+  /*! Lift-off tangential, with the velocity at the first step without contact force: Eqs. 3b and 4-6 or INTEGRATE */
   bool end(const DetachmentFunctions &functions, const double *velocity, uint64_t *attached,
            Workspace &work);
 
@@ -162,6 +166,7 @@ class Collision {
   int nslid, nrolled;               // of the grains that have left
   std::vector<uint64_t> start;      // attached at begin(), kept from when the first grain could leave
   AccelerationHistory history;
+  ImpulseRecord record;             // with INTEGRATE only
 
   struct Window {
     double axis[3], from, along, aside;    // from where it was opened to S = along, E = aside
@@ -180,6 +185,8 @@ class Collision {
                 Workspace &work);
   void check_all(const DetachmentFunctions &functions, const double *g, uint64_t *attached,
                  Workspace &work);
+  void estimate(const DetachmentFunctions &functions, const double *velocity, uint64_t *attached, Workspace &work);
+  void integrate(const DetachmentFunctions &functions, uint64_t *attached, Workspace &work);
   void leave(const DetachmentFunctions &functions, const Detachment &grain, const double *g, uint64_t *attached,
              Workspace &work);
   bool has_slid(const DetachmentFunctions &functions, int bit) const;

@@ -1,0 +1,79 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_SURFACE_MOTION_H
+#define DUST_CORE_SURFACE_MOTION_H
+
+namespace Dust {
+
+/*! Grains that slide and roll over their carrier in a collision
+ *
+ * A grain sits at the direction n and moves with w, tangential, relative to the carrier's centre. It spins with Omega, and
+ * its contact is displaced by the rolling displacement xi. With the carrier's acceleration a and |r_pd| = R_p + R_d:
+ *
+ *   outward force    F_n = -m a.n + m |w|^2/|r_pd|                        the grain leaves when F_n > F_c
+ *   friction         |f| <= mu_f |2 F_c - F_n|, against the slip u = w - R_d Omega x n or against what would start it
+ *   along surface    m dw/dt = -m (a - (a.n) n) + f,    dn/dt = w/|r_pd|
+ *   spin             (2/5) m R_d^2 dOmega/dt = -R_d n x f - k n x xi
+ *   rolling          dxi/dt = R_12 Omega x n, |xi| held at R_12 theta_crit
+ *   its stiffness    k = 4 F_c (a/a0)^(3/2) = 2 F_c (1 + sqrt(1 - F_n/F_c))
+ *
+ * There is no normal motion: the contact follows its load at once. Dominik & Tielens, Philos. Mag. A 72, 783 (1995)
+ * for rolling; the limit of friction is that of the detachment functions.
+ *
+ * Here all forces are per grain mass, c = F_c/m. In place of Omega and xi stand vectors of the tangential plane, the
+ * velocity p = R_d Omega x n at which the rolling contact moves over the grain and the angle psi = xi/R_12:
+ *
+ *   u = w - p,    dp/dt = -(5/2) (f + s psi),    dpsi/dt = p/R_d,    s = (R_12/R_d) k/m
+ *
+ * Spin about n does not matter. A carrier that turns with omega would add R_p omega x n to p in u and in dpsi/dt.
+ *
+ * A step is a leapfrog: half of dn and dpsi, all of dw and dp with the forces there, the other half. Friction is the one
+ * that ends the slip within the step, or its limit: it sticks without a spring, at any step. */
+class SurfaceMotion {
+ public:
+  static constexpr int LANES = 32;    // side by side, for the compiler's vectors
+
+  /*! \param friction  mu_f
+   *  \param rolling   theta_crit */
+  SurfaceMotion(double friction, double rolling);
+
+  /*! Takes away all grains */
+  void clear();
+
+  int grains() const { return count; }
+  bool full() const { return count == LANES; }
+
+  /*! One more grain, at rest
+   *  \param direction  n
+   *  \param hold       c = F_c/m_d
+   *  \param grain_radius, carrier_radius  R_d, R_p */
+  void add(const double *direction, double hold, double grain_radius, double carrier_radius);
+
+  /*! A step of the carrier's motion: its mean acceleration over the time dt */
+  void advance(const double *acceleration, double dt);
+
+  /*! The end of the contact: only its motion lifts a grain */
+  void release();
+
+  bool attached(int grain) const { return here[grain] > 0.0; }
+
+  // the motion of a grain, at last when it left; vectors of the surface
+  double direction(int grain, int d) const { return n[d][grain]; }
+  double velocity(int grain, int d) const { return w[d][grain]; }             //!< relative to the carrier's centre
+  double rolling_velocity(int grain, int d) const { return p[d][grain]; }     //!< R_d Omega x n
+  double rolling_angle(int grain, int d) const { return psi[d][grain]; }      //!< xi/R_12
+
+ private:
+  double friction, rolling2;
+  int count;
+  // by grain
+  double here[LANES];    // 1 as long as it is attached, then 0
+  double hold[LANES], per_hold[LANES], per_shell[LANES], per_radius[LANES], stiffness[LANES];    // c, 1/c, 1/|r_pd|, 1/R_d, 2 c R_12/R_d
+  double n[3][LANES], w[3][LANES], p[3][LANES], psi[3][LANES];
+};
+
+}    // namespace Dust
+
+#endif

@@ -1,0 +1,433 @@
+// Grains that slide and roll over their carrier, against a reference that follows each alone in tiny steps, and against
+// closed forms.
+
+#include "surface_motion.h"
+
+#include "detachment.h"
+#include "hamaker.h"
+#include "impulse_record.h"
+#include "jkr.h"
+#include "motion_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+using namespace Dust;
+
+namespace {
+
+constexpr double RP = 0.75e-3, RD = 10.0e-6;
+const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9),
+                          combined_modulus(75.0e9, 0.3, 210.0e9, 0.3), 0.3, 0.15};
+const double HOLD = pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / (4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0);
+
+struct Vec {
+  double x = 0.0, y = 0.0, z = 0.0;
+};
+Vec operator*(double s, const Vec &v) { return {s * v.x, s * v.y, s * v.z}; }
+Vec operator+(const Vec &a, const Vec &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec operator-(const Vec &a, const Vec &b) { return a + -1.0 * b; }
+double dot(const Vec &a, const Vec &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec cross(const Vec &a, const Vec &b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+double size(const Vec &v) { return std::sqrt(dot(v, v)); }
+Vec along_surface(const Vec &v, const Vec &n) { return v - dot(v, n) * n; }
+
+// a collision: contact acceleration of each step
+struct History {
+  std::vector<Vec> a;
+  double dt;
+};
+
+// largest F_n/F_c of a grain that is followed in forces, spin and displacement, in small steps: it leaves where this comes
+// to 1, and is followed on all the same, so that the answer tells by how much
+double largest_load(const Grain &grain, double carrier_radius, const Material &m, const History &h)
+{
+  const double mass = 4.0 / 3.0 * M_PI * std::pow(grain.radius, 3) * m.density, inertia = 0.4 * mass * grain.radius * grain.radius;
+  const double r12 = effective_radius(carrier_radius, grain.radius), shell = carrier_radius + grain.radius;
+  const double fc = pull_off_force(m.gamma, r12), pivot = r12 * m.rolling;
+  Vec n = {grain.n[0], grain.n[1], grain.n[2]}, w, omega, xi;
+  const int substeps = 1 + static_cast<int>(4000 / h.a.size());
+  const double dt = h.dt / substeps;
+  double most = 0.0;
+  for (size_t k = 0; k <= h.a.size(); k++) {
+    const bool over = k == h.a.size();
+    for (int s = 0; s < (over ? 1 : substeps); s++) {
+      const Vec a = over ? Vec() : h.a[k];
+      const double fn = mass * (dot(w, w) / shell - dot(a, n));
+      most = std::max(most, fn / fc);
+      if (over) return most;
+      const double stiffness = 2.0 * fc * (1.0 + std::sqrt(std::max(0.0, 1.0 - fn / fc))), limit = m.friction * std::fabs(2.0 * fc - fn);
+      const Vec slip = w - grain.radius * cross(omega, n), push = -mass * along_surface(a, n), resist = -stiffness * cross(n, xi);
+      // without friction the slip of the next step would be this; friction changes it by (1/m + R^2/I) f dt
+      const Vec next = slip + dt / mass * push - dt * grain.radius / inertia * cross(resist, n);
+      Vec f = -1.0 / (dt * (1.0 / mass + grain.radius * grain.radius / inertia)) * next;
+      if (size(f) > limit) f = limit / size(f) * f;
+      w = w + dt / mass * (push + f);
+      omega = omega + dt / inertia * (resist - grain.radius * cross(n, f));
+      n = n + dt / shell * w;
+      n = 1.0 / size(n) * n;
+      w = along_surface(w, n);
+      xi = along_surface(xi + dt * r12 * cross(omega, n), n);
+      if (size(xi) > pivot) xi = pivot / size(xi) * xi;
+    }
+  }
+  return most;
+}
+
+// mode by grain, by Collision; handed over to another one every `handover` steps
+std::map<int, Mode> by_collision(const DetachmentFunctions &functions, const History &h, int handover = 0)
+{
+  std::map<int, Mode> left;
+  std::vector<uint64_t> attached = functions.all_attached();
+  Workspace work;
+  Collision collision;
+  Vec v = {1.0, 2.0, 3.0};
+  collision.begin(&v.x);
+  for (size_t k = 0; k <= h.a.size(); k++) {
+    if (k < h.a.size()) {
+      collision.step(functions, &h.a[k].x, h.dt, attached.data(), work);
+      v = v + h.dt * h.a[k];
+    } else
+      collision.end(functions, &v.x, attached.data(), work);
+    for (const Detachment &d : work.detached) left[functions.grain(d.bit)] = d.mode;
+    work.detached.clear();
+    if (handover && k % handover == 0) {
+      std::vector<double> buf(collision.packed_size());
+      collision.pack(buf.data());
+      Collision other;
+      const double earlier[3] = {9.0, 9.0, 9.0};    // one that has been used
+      std::vector<uint64_t> all = functions.all_attached();
+      other.begin(earlier);
+      other.step(functions, earlier, 1.0, all.data(), work);
+      work.detached.clear();
+      other.unpack(buf.data());
+      collision = other;
+    }
+  }
+  return left;
+}
+
+// one to three pulses, each in a direction of its own
+History random_history(std::mt19937 &random)
+{
+  const auto u = [&]() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); };
+  History h;
+  const int steps = 3 + static_cast<int>(800 * u() * u());
+  h.a.assign(steps, Vec());
+  const int pulses = 1 + static_cast<int>(2.5 * u());
+  for (int p = 0; p < pulses; p++) {
+    const double strength = HOLD * std::exp(3.5 * u()), middle = u() * steps, width = steps * (0.2 + u());
+    const double z = 2.0 * u() - 1.0, phi = 2.0 * M_PI * u(), s = std::sqrt(1.0 - z * z);
+    for (int k = 0; k < steps; k++) {
+      const double x = (k + 0.5 - middle) / width;
+      if (std::fabs(x) < 1.0) h.a[k] = h.a[k] + strength * (1.0 - x * x) * Vec{s * std::cos(phi), s * std::sin(phi), z};
+    }
+  }
+  h.dt = (1.0 + 6.0 * u()) * 1.0e-6 / steps;
+  return h;
+}
+
+Criteria integrate()
+{
+  Criteria criteria;
+  criteria.tangential = Criteria::INTEGRATE;
+  return criteria;
+}
+
+struct Comparison {
+  int tangential = 0, close = 0, stay = 0;
+};
+
+// random collisions of a texture against the reference; grains whose load comes as close as `tolerance` to 1 may do either
+Comparison compare(const Texture &texture, Material m, int collisions, double tolerance)
+{
+  std::mt19937 random(3);
+  Comparison found;
+  for (int i = 0; i < collisions; i++) {
+    m.friction = i % 5 == 4 ? 0.0 : 0.1 + 0.1 * (i % 4);
+    m.rolling = i % 3 == 2 ? 0.0 : 0.15;
+    const DetachmentFunctions functions(texture, m, integrate());
+    const History h = random_history(random);
+    const std::map<int, Mode> left = by_collision(functions, h);
+    EXPECT_EQ(by_collision(functions, h, 17), left) << "collision " << i << " handed over";
+    for (size_t k = 0; k < texture.grains.size(); k++) {
+      const auto it = left.find(k);
+      if (it != left.end() && it->second == NORMAL) continue;
+      const bool leaves = it != left.end();
+      const double load = largest_load(texture.grains[k], texture.carrier_radius, m, h);
+      if (load > 1.0 + tolerance || load < 1.0 - tolerance) {
+        EXPECT_EQ(leaves, load > 1.0) << "collision " << i << " grain " << k << " load " << load;
+      } else
+        found.close++;
+      (leaves ? found.tangential : found.stay)++;
+    }
+    if (::testing::Test::HasFailure()) break;
+  }
+  return found;
+}
+
+// one grain on a wall, nearly: a carrier so large that its surface is flat. Normal z, pushed along x
+struct OnAPlane {
+  static constexpr double CARRIER = 1.0e3;
+  SurfaceMotion motion;
+  OnAPlane(double friction, double rolling) : motion(friction, rolling)
+  {
+    const double n[3] = {0.0, 0.0, 1.0};
+    motion.add(n, HOLD, RD, CARRIER);
+  }
+  // the inertia force pushes with `push`
+  void advance(double push, double time, int steps)
+  {
+    const double a[3] = {-push, 0.0, 0.0};
+    for (int k = 0; k < steps; k++) motion.advance(a, time / steps);
+  }
+  double w() const { return motion.velocity(0, 0); }
+  double p() const { return motion.rolling_velocity(0, 0); }
+  double psi() const { return motion.rolling_angle(0, 0); }
+  double energy() const { return 0.5 * w() * w() + 0.2 * p() * p() + 0.5 * RD * STIFFNESS * psi() * psi(); }
+  static constexpr double STIFFNESS_IN_HOLD = 4.0;    // s = k/m without load
+  static inline const double STIFFNESS = STIFFNESS_IN_HOLD * HOLD;
+};
+
+}    // namespace
+
+TEST(SurfaceMotion, SameGrainsAsAReferenceInTinySteps)
+{
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius = RD;
+  const Comparison found = compare(texture, CALCITE, 60, 0.003);
+  EXPECT_GT(found.tangential, 300);    // the test tests something
+  EXPECT_GT(found.stay, 2000);
+  EXPECT_LT(found.close, 30);
+}
+
+TEST(SurfaceMotion, SameGrainsAsAReferenceForGrainsOfAllSizes)
+{
+  std::mt19937 random(4);
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius = RD * (0.4 + 1.2 * std::uniform_real_distribution<double>()(random));
+  const Comparison found = compare(texture, CALCITE, 20, 0.003);
+  EXPECT_GT(found.tangential, 100);
+  EXPECT_GT(found.stay, 500);
+}
+
+TEST(SurfaceMotion, WithoutFrictionAGrainKeepsItsVelocity)
+{
+  OnAPlane grain(0.0, 0.15);
+  grain.advance(1.0e6, 3.0e-6, 50);
+  EXPECT_NEAR(grain.w(), 3.0, 1e-9);
+  EXPECT_EQ(grain.p(), 0.0);
+}
+
+TEST(SurfaceMotion, RollingWithoutResistanceGivesFiveSevenths)
+{
+  OnAPlane grain(10.0, 0.0);
+  grain.advance(1.0e6, 3.0e-6, 50);
+  EXPECT_NEAR(grain.w(), 5.0 / 7.0 * 3.0, 1e-9);
+  EXPECT_NEAR(grain.p(), grain.w(), 1e-9);
+}
+
+TEST(SurfaceMotion, SlidingIsBrakedByTheLimitOfFriction)
+{
+  // pushed faster than it can roll: no slip would need 2/7 of the push
+  OnAPlane grain(0.3, 0.0);
+  const double push = 20.0 * HOLD, brake = 0.3 * 2.0 * HOLD, time = 1.0e-6;
+  ASSERT_GT(2.0 / 7.0 * push, brake);
+  grain.advance(push, time, 50);
+  EXPECT_NEAR(grain.w(), (push - brake) * time, 1e-8);
+  EXPECT_NEAR(grain.p(), 2.5 * brake * time, 1e-8);
+  // then left alone until it rolls: w + (2/5) p does not change
+  const double kept = grain.w() + 0.4 * grain.p();
+  grain.advance(0.0, 40.0e-6, 4000);
+  EXPECT_NEAR(grain.w(), kept / 1.4, 1e-8);
+  EXPECT_NEAR(grain.p(), grain.w(), 1e-8);
+}
+
+TEST(SurfaceMotion, LoadOnTheContactRaisesTheLimit)
+{
+  // pressed on with g_n = -3 c: the limit is mu (2 c + 3 c)
+  OnAPlane grain(0.3, 0.0);
+  const double a[3] = {-40.0 * HOLD, 0.0, 3.0 * HOLD}, time = 1.0e-6;
+  for (int k = 0; k < 50; k++) grain.motion.advance(a, time / 50);
+  EXPECT_NEAR(grain.w(), (40.0 - 0.3 * 5.0) * HOLD * time, 1e-6);
+}
+
+TEST(SurfaceMotion, AGrainBelowTheLimitsRocksAboutItsPlace)
+{
+  // no slip: w' = (5/7) (push - s psi), psi' = w/R_d, an oscillator
+  OnAPlane grain(0.3, 0.15);
+  const double push = 0.2 * HOLD, period = 2.0 * M_PI * std::sqrt(7.0 * RD / (5.0 * OnAPlane::STIFFNESS));
+  EXPECT_NEAR(period, 32.3e-6, 0.1e-6);
+  grain.advance(push, 0.5 * period, 200);
+  EXPECT_NEAR(grain.psi(), 2.0 * push / OnAPlane::STIFFNESS, 1e-4 * 0.1);
+  EXPECT_GT(grain.psi(), 0.09);
+  EXPECT_NEAR(grain.w(), 0.0, 1e-3);
+  grain.advance(push, 0.5 * period, 200);
+  EXPECT_NEAR(grain.psi(), 0.0, 1e-4 * 0.1);
+  EXPECT_NEAR(grain.w(), 0.0, 1e-3);
+  EXPECT_TRUE(grain.motion.attached(0));
+  // nothing moves it at all: it stays as it is
+  OnAPlane still(0.3, 0.15);
+  still.advance(0.0, period, 200);
+  EXPECT_EQ(still.w(), 0.0);
+  EXPECT_EQ(still.psi(), 0.0);
+}
+
+TEST(SurfaceMotion, RollingResistanceIsHeldAtThePivotsAngle)
+{
+  // far beyond it: w' = (5/7) (push - s theta_crit)
+  OnAPlane grain(5.0, 0.02);
+  grain.advance(2.0 * HOLD, 10.0e-6, 200);
+  EXPECT_GE(grain.psi(), 0.02);
+  EXPECT_LE(grain.psi(), 0.02 + 0.5 * 5.0e-8 * grain.p() / RD + 1e-12);    // held in the middle of each step
+  const double before = grain.w();
+  grain.advance(2.0 * HOLD, 1.0e-6, 20);
+  EXPECT_NEAR(grain.w() - before, 5.0 / 7.0 * (2.0 - 4.0 * 0.02) * HOLD * 1.0e-6, 1e-6);
+}
+
+TEST(SurfaceMotion, EnergyIsKeptInRollingAndNeverMadeBySliding)
+{
+  OnAPlane grain(1.0, 10.0);
+  grain.advance(1.0 * HOLD, 3.0e-6, 100);
+  const double start = grain.energy();
+  EXPECT_GT(start, 0.01);
+  for (int k = 0; k < 50; k++) {
+    grain.advance(0.0, 1.0e-6, 20);
+    EXPECT_NEAR(grain.energy(), start, 0.005 * start);    // psi is half a step ahead of nothing: second order
+  }
+  OnAPlane slides(0.02, 0.15);
+  slides.advance(10.0 * HOLD, 2.0e-6, 100);
+  double last = slides.energy();
+  const double first = last;
+  for (int k = 0; k < 50; k++) {
+    slides.advance(0.0, 1.0e-6, 20);
+    EXPECT_LE(slides.energy(), last * (1.0 + 1e-3));
+    last = slides.energy();
+  }
+  EXPECT_LT(last, 0.9 * first);
+}
+
+TEST(SurfaceMotion, AGrainLeavesWhereItsMotionOutweighsAdhesion)
+{
+  // no friction, a slow kick along the surface: it leaves at |w|^2/|r_pd| = c
+  const double n[3] = {0.0, 0.0, 1.0}, a[3] = {-1.0e6, 0.0, 0.0};
+  SurfaceMotion motion(0.0, 0.15);
+  motion.add(n, HOLD, RD, RP);
+  for (int k = 0; k < 4000 && motion.attached(0); k++) motion.advance(a, 5.0e-9);
+  ASSERT_FALSE(motion.attached(0));
+  double w[3], at[3];
+  for (int d = 0; d < 3; d++) {
+    w[d] = motion.velocity(0, d);
+    at[d] = motion.direction(0, d);
+  }
+  const double w2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], lift = w2 / (RP + RD) - a[0] * at[0];
+  EXPECT_NEAR(lift, HOLD, 0.01 * HOLD);
+  const double before = w[0];
+  motion.advance(a, 5.0e-9);    // gone: not moved any more
+  EXPECT_EQ(motion.velocity(0, 0), before);
+}
+
+TEST(SurfaceMotion, GrainsAfterTheContactAreAskedOnceMore)
+{
+  // pressed on until the end, with a velocity that adhesion alone cannot hold
+  const double n[3] = {0.0, 0.0, 1.0};
+  SurfaceMotion motion(0.0, 0.15);
+  motion.add(n, HOLD, RD, RP);
+  const double a[3] = {-11.0e6, 0.0, 20.0 * HOLD};
+  for (int k = 0; k < 100; k++) motion.advance(a, 1.0e-8);
+  EXPECT_TRUE(motion.attached(0));
+  motion.release();
+  EXPECT_FALSE(motion.attached(0));
+}
+
+TEST(SurfaceMotion, GrainsDoNotDependOnTheirNeighbours)
+{
+  std::mt19937 random(5);
+  const History h = random_history(random);
+  const Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  SurfaceMotion together(0.3, 0.15);
+  for (int k = 0; k < SurfaceMotion::LANES; k++) together.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP);
+  EXPECT_TRUE(together.full());
+  for (const Vec &a : h.a) together.advance(&a.x, h.dt);
+  for (int k = 0; k < SurfaceMotion::LANES; k++) {
+    SurfaceMotion alone(0.3, 0.15);
+    alone.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP);
+    for (const Vec &a : h.a) alone.advance(&a.x, h.dt);
+    EXPECT_EQ(alone.attached(0), together.attached(k));
+    for (int d = 0; d < 3; d++) EXPECT_EQ(alone.velocity(0, d), together.velocity(k, d));
+  }
+}
+
+TEST(ImpulseRecord, KeepsSumsInBoundedMemory)
+{
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (int steps : {1, 63, 64, 65, 128, 129, 1000, 5000}) {
+    ImpulseRecord record;
+    Vec sum;
+    double time = 0.0;
+    for (int k = 0; k < steps; k++) {
+      const Vec a = {u(random), u(random), u(random)};
+      const double dt = 1.0 + 0.5 * u(random);
+      record.add(&a.x, dt);
+      sum = sum + dt * a;
+      time += dt;
+      ASSERT_LE(record.spans().size(), size_t(ImpulseRecord::MOST));
+    }
+    EXPECT_GE(record.spans().size(), size_t(std::min(steps, ImpulseRecord::MOST / 2)));
+    for (const auto &span : record.spans()) {
+      sum = sum - Vec{span.impulse[0], span.impulse[1], span.impulse[2]};
+      time -= span.duration;
+    }
+    EXPECT_NEAR(size(sum), 0.0, 1e-9);
+    EXPECT_NEAR(time, 0.0, 1e-9);
+  }
+}
+
+TEST(ImpulseRecord, IsKeptForIntegrateOnly)
+{
+  std::mt19937 random(7);
+  const History h = random_history(random);
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  std::map<int, int> sizes;
+  for (auto tangential : {Criteria::OFF, Criteria::FRICTIONLESS, Criteria::ESTIMATE, Criteria::INTEGRATE}) {
+    Criteria criteria;
+    criteria.tangential = tangential;
+    const DetachmentFunctions functions(texture, CALCITE, criteria);
+    std::vector<uint64_t> attached = functions.all_attached();
+    Workspace work;
+    Collision collision;
+    const Vec v;
+    collision.begin(&v.x);
+    for (const Vec &a : h.a) collision.step(functions, &a.x, h.dt, attached.data(), work);
+    sizes[tangential] = collision.packed_size();
+  }
+  EXPECT_EQ(sizes[Criteria::OFF], sizes[Criteria::ESTIMATE]);
+  EXPECT_EQ(sizes[Criteria::FRICTIONLESS], sizes[Criteria::ESTIMATE]);
+  EXPECT_GT(sizes[Criteria::INTEGRATE], sizes[Criteria::ESTIMATE] + 4 * ImpulseRecord::MOST / 2);
+}
+
+TEST(MotionBound, HoldsForWhatMovesMostAndSparesWhatDoesNot)
+{
+  // half a sine for 3 us along z, at the equator and at the pole
+  const auto bound = [](double speed) {
+    ImpulseRecord record;
+    const double time = 3.0e-6, peak = 0.5 * M_PI * speed / time;
+    for (int k = 0; k < 300; k++) {
+      const double a[3] = {0.0, 0.0, peak * std::sin(M_PI * (k + 0.5) / 300)};
+      record.add(a, time / 300);
+    }
+    return MotionBound(record, peak, 0.15, RP);
+  };
+  const double equator[3] = {1.0, 0.0, 0.0}, pole[3] = {0.0, 0.0, 1.0}, needed = std::sqrt(HOLD * (RP + RD));
+  EXPECT_GT(bound(1.001 * needed).of(equator, HOLD, RP + RD).centrifugal, HOLD);    // frictionless
+  EXPECT_LT(bound(1.5 * needed).of(pole, HOLD, RP + RD).centrifugal, 0.2 * HOLD);
+  EXPECT_LT(bound(0.5 * needed).of(equator, HOLD, RP + RD).centrifugal, 0.5 * HOLD);
+  EXPECT_GT(bound(0.5 * needed).of(equator, HOLD, RP + RD).turn, 0.5 * needed * 3.0e-6 / (RP + RD));
+  EXPECT_TRUE(bound(0.5 * needed).any_may_leave(HOLD, HOLD));
+  EXPECT_FALSE(bound(0.01 * needed).any_may_leave(HOLD, HOLD));
+}
