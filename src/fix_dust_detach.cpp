@@ -70,6 +70,7 @@ FixDustDetach::~FixDustDetach()
 void FixDustDetach::parse(int narg, char **arg)
 {
   friction = strcmp(update->unit_style, "si") == 0 ? 0.3 : -1.0;    // the reference case, as in DustOptions
+  rolling = 0.15;
   every = 1;
   keep_rows = true;
 
@@ -82,20 +83,23 @@ void FixDustDetach::parse(int narg, char **arg)
     }
     const std::string key = arg[iarg];
     if (key == "stiffen") error->all(FLERR, "Fix dust/detach stiffen is not available yet");
-    if (key != "friction" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" && key != "rotation" &&
+    if (key != "friction" && key != "rolling" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" && key != "rotation" &&
         key != "mass" && key != "emit")
       error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
-                 "friction, tangential, criteria, every, rows, write, rotation, orientation, mass or emit", key);
+                 "friction, rolling, tangential, criteria, every, rows, write, rotation, orientation, mass or emit", key);
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {
       friction = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, friction >= 0.0 && std::isfinite(friction), "at least 0");
+    } else if (key == "rolling") {
+      rolling = options.number(iarg, 1, arg);
+      options.check(iarg, 1, arg, rolling >= 0.0 && std::isfinite(rolling), "at least 0 (rad)");
     } else if (key == "tangential") {
-      if (value == "integrate") options.only(iarg, arg, "estimate");
-      options.check(iarg, 1, arg, value == "estimate" || value == "frictionless" || value == "off",
-                    "estimate, frictionless or off");
+      options.check(iarg, 1, arg, value == "estimate" || value == "integrate" || value == "frictionless" || value == "off",
+                    "estimate, integrate, frictionless or off");
       criteria.tangential = value == "estimate" ? Dust::Criteria::ESTIMATE
+          : value == "integrate"                ? Dust::Criteria::INTEGRATE
           : value == "frictionless"             ? Dust::Criteria::FRICTIONLESS
                                                 : Dust::Criteria::OFF;
     } else if (key == "criteria") {
@@ -122,7 +126,7 @@ void FixDustDetach::parse(int narg, char **arg)
 void FixDustDetach::build()
 {
   texture = options.texture(carrier_radius);
-  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction};
+  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling};
   functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, criteria);
 
   // a number that tells this texture from another one in a restart file

@@ -113,8 +113,8 @@ def test_a_resolved_impact(command, tmp_path):
         (("--seed", "0"), "--seed: 0 is out of range; allowed: 1 to 900000000"),
         (("--seed", "1.5"), "--seed: invalid int value: '1.5'"),
         (
-            ("--tangential", "integrate"),
-            "--tangential: unknown choice 'integrate'; allowed: estimate, frictionless, off",
+            ("--tangential", "guess"),
+            "--tangential: unknown choice 'guess'; allowed: estimate, integrate, frictionless, off",
         ),
         (("--timestep", "1"), "--timestep: 1 is out of range"),
         (("--method", "magic"), "--method: unknown choice 'magic'; allowed: functions, resolved"),

@@ -44,7 +44,7 @@ def test_numbers_of_any_kind_become_plain_ones():
         ("seed", 0, "1 to 900000000"),
         ("seed", -5, "1 to 900000000"),
         ("seed", 1.5, "whole number"),
-        ("tangential", "integrate", "estimate, frictionless, off"),
+        ("tangential", "guess", "estimate, integrate, frictionless, off"),
         ("method", "both", "functions, resolved"),
         ("rotation", True, "--no-rotation"),
         ("rotation", 1, "not true or false"),

@@ -68,6 +68,15 @@ def test_restart_in_contact_on_other_ranks(one_rank_restarted, tmp_path, before,
     assert thermo == one_rank_restarted[1]
 
 
+def test_motion_of_grains_on_any_number_of_ranks(one_rank, tmp_path):
+    """What `tangential integrate` records of a collision goes with the carrier, to another rank and into a restart."""
+    whole = run(tmp_path, 1, tangential="integrate")
+    assert whole[2] != one_rank[2]
+    assert run(tmp_path, 4, tangential="integrate") == whole
+    run(tmp_path, 2, steps="1500", save="yes", tangential="integrate")
+    assert run(tmp_path, 4, start="restart", tangential="integrate")[1].splitlines()[-1] == whole[1].splitlines()[-1]
+
+
 @pytest.mark.parametrize("newton", ["off", "on"])
 def test_real_grains_stay_tied_on_any_number_of_ranks(tmp_path, newton):
     """Chains of necks cross ranks; the sums of forces on the carrier run in another order, which is round-off."""

@@ -33,7 +33,7 @@ std::vector<double> impact(const std::string &options = "", double vx = 0.0, dou
 
 TEST(FixDustDetach, OutputsAgreeWithEachOther)
 {
-  for (const char *options : {"", "criteria ibrahim", "tangential frictionless", "tangential off"}) {
+  for (const char *options : {"", "criteria ibrahim", "tangential frictionless", "tangential integrate", "tangential off"}) {
     const std::vector<double> v = impact(options);
     EXPECT_EQ(v[1], 4500.0);
     EXPECT_EQ(v[2], v[1] - v[3] - v[4] - v[12] - v[13]);
@@ -45,6 +45,12 @@ TEST(FixDustDetach, OutputsAgreeWithEachOther)
   EXPECT_EQ(impact("tangential off")[4], 0.0);
   EXPECT_GT(impact("tangential frictionless")[4], impact()[4]);
   EXPECT_GT(impact()[4], 1000.0);
+  // each grain's own motion; the resolved run of this impact loses 0.7171
+  EXPECT_NEAR(impact("tangential integrate")[0], 0.7233, 0.001);
+  EXPECT_EQ(impact("tangential integrate rolling 0.15"), impact("tangential integrate"));
+  // at 8 m/s the last grains that leave slide, at 12 m/s they roll
+  EXPECT_GT(impact("tangential integrate rolling 0", 0.0, -12.0)[4], impact("tangential integrate", 0.0, -12.0)[4]);
+  EXPECT_EQ(impact("rolling 0.5"), impact());
   EXPECT_EQ(impact()[12] + impact()[13], 0.0);
   EXPECT_GT(impact("criteria ibrahim")[12] + impact("criteria ibrahim")[13], 3000.0);    // the rest lifts off in the first steps
   // what is counted does not depend on the criteria that detach; at 8 m/s all but grains at the poles slide and roll
@@ -118,13 +124,14 @@ TEST(FixDustDetach, AHundredCarriersAreAsAHundredSingleOnes)
 
 TEST(FixDustDetach, RestartInTheMiddleOfACollisionIsExact)
 {
-  for (int at : {500, 1000, 1500, 2500}) {
+  for (const auto &[at, options] : {std::make_pair(500, "every 2000"), {1000, "every 2000"}, {1500, "every 2000"}, {2500, "every 2000"},
+                                    {1500, "every 2000 tangential integrate"}}) {
     Deck whole;
     whole.box();
     whole.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
     whole.carrier(0.004, 0.0, START, 9.0, 0.0, -12.0);
     whole.wall_and_motion();
-    dust(whole, "every 2000");
+    dust(whole, options);
     const std::string file = "dust_restart_" + std::to_string(at);
     whole("run " + std::to_string(at) + " post no\nwrite_restart " + file);
 
@@ -133,7 +140,7 @@ TEST(FixDustDetach, RestartInTheMiddleOfACollisionIsExact)
     rest("read_restart " + file + "\ncomm_modify vel yes\ntimestep 1e-9\nneighbor 3e-4 bin\npair_style granular\npair_coeff * * " +
          contact(0.7));
     rest.wall_and_motion();
-    dust(rest, "every 2000");
+    dust(rest, options);
     EXPECT_EQ(rest.vector(), whole.vector()) << "at once";
     EXPECT_EQ(rest.events(), whole.events()) << "at once";
     for (const char *next : {"run 2000 upto post no", "run 4000 upto post no", "run 6000 upto post no"}) {
@@ -169,7 +176,7 @@ TEST(FixDustDetach, ARestartWithAnotherTextureIsRefused)
 
 TEST(FixDustDetach, EachUnitStyleGivesTheSameGrains)
 {
-  const std::vector<double> si = impact();
+  const std::vector<double> si = impact("tangential integrate");    // needs most of all
   // the same impact in other units: what one SI unit of each is in these
   struct Units {
     const char *style;
@@ -193,7 +200,7 @@ TEST(FixDustDetach, EachUnitStyleGivesTheSameGrains)
                   "fix wall all wall/gran granular hertz/material %.15g 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping "
                   "coeff_restitution/limited zplane 0.0 NULL\n"
                   "fix dust all dust/detach texture monolayer %.15g coverage 0.2 seed 1 density %.15g hamaker %.15g %.15g "
-                  "elastic %.15g 0.3 %.15g 0.3 friction 0.3\nrun 4000 post no",
+                  "elastic %.15g 0.3 %.15g 0.3 friction 0.3 tangential integrate\nrun 4000 post no",
                   210e9 * pressure, 20e-6 * L, 2700.0 * density, std::sqrt(10.1e-20 * 21.2e-20) * energy, 0.4e-9 * L,
                   75e9 * pressure, 210e9 * pressure);
     deck(text);
@@ -457,7 +464,8 @@ TEST(FixDustDetach, WrongInputIsNamed)
   names(ok + "distribution lognormal 15e-6 1", "distribution value 1 ");
   names(ok + "distribution rrsb 0 3", "distribution");
   names(ok + "tangential sideways", "sideways");
-  names(ok + "tangential integrate", "integrate");
+  names(ok + "rolling -1", "rolling");
+  names(ok + "rolling", "rolling");
   names(ok + "criteria all", "all");
   names(ok + "every 0", "every");
   for (const char *later : {"rotation yes", "mass yes", "orientation random", "emit 2", "stiffen 10"})

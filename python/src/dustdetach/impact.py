@@ -9,7 +9,7 @@ from typing import Any
 from .errors import InvalidInput
 
 METHODS = ("functions", "resolved")
-TANGENTIAL = ("estimate", "frictionless", "off")
+TANGENTIAL = ("estimate", "integrate", "frictionless", "off")
 
 #: share of a surface that random sequential placement of discs covers before it jams
 JAMMING = 0.547
@@ -70,8 +70,8 @@ class Impact:
         wall_friction: mu between carrier and wall, from 0 to 10.
         grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0; only resolved runs use it.
         seed: of the random texture, 1 to 900000000.
-        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``frictionless`` (Eq. 4) or ``off``; resolved
-            runs do not use it.
+        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``integrate`` (each grain's own sliding and
+            rolling), ``frictionless`` (Eq. 4) or ``off``; resolved runs do not use it.
         rotation: whether the carrier's spin is followed; ``False``, as in the paper.
         timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
             grain's oscillation.
