@@ -59,6 +59,10 @@ void ComputeDustCarrier::init()
   pair = dynamic_cast<PairGranular *>(force->pair);
   if (!pair) error->all(FLERR, "Compute dust/carrier needs pair_style granular, not {}", force->pair_style ? force->pair_style : "none");
   history = nullptr;
+  bool known = false;
+  for (int m = 0; m < pair->nmodels; m++)
+    known = known || dynamic_cast<const GranSubModNormalJKRVdW *>(pair->models_list[m]->normal_model);
+  if (!known) error->all(FLERR, "Compute dust/carrier needs a pair_coeff with the normal model jkr/vdw, which knows necks");
 }
 
 /* ----------------------------------------------------------------------

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "force.h"
+#include "gran_sub_mod_damping.h"
 #include "gran_sub_mod_heat.h"
 #include "granular_model.h"
 #include "neigh_request.h"
@@ -44,6 +45,9 @@ GranSubModNormalJKRVdWCut::GranSubModNormalJKRVdWCut(GranularModel *gm, LAMMPS *
 
 void GranSubModNormalJKRVdW::init()
 {
+  const std::string &damping = gm->damping_model->name;
+  if (damping == "velocity" || damping == "mass_velocity")
+    error->all(FLERR, "Normal model {} cannot use damping {}, which acts without a neck: use viscoelastic", name, damping);
   gm->heat_model->size_history = 4;
   gm->size_history = 0;
   for (const GranSubMod *model : gm->sub_models) gm->size_history += model->size_history;

@@ -110,6 +110,17 @@ TEST(JkrVdwMixing, SkinBelowTheRange)
   EXPECT_GT(enough.atom("f", 1)[2], 0.0);
 }
 
+TEST(JkrVdwMixing, DampingThatActsWithoutANeckIsRefused)
+{
+  for (const char *damping : {"velocity", "mass_velocity"}) {
+    Deck deck;
+    deck.box();
+    const std::string error = deck.attempt("pair_coeff 1 1 jkr/vdw 75e9 0 0.3 10.1e-20 0.4e-9 tangential mindlin NULL 0.0 0.3 damping " +
+                                           std::string(damping) + "\npair_coeff 1 2 " + contact(0.7) + "\nrun 0 post no");
+    EXPECT_NE(error.find("cannot use damping " + std::string(damping)), std::string::npos) << error;
+  }
+}
+
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);

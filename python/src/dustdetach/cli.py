@@ -29,7 +29,7 @@ _HELP = {
     "bare": "half-angle of the bare cap, rad",
     "grain_diameter": "m",
     "carrier_diameter": "m",
-    "hamaker": "A_12 of grain and carrier, J",
+    "hamaker": "A_12 of grain and carrier, J; that of two grains stays at 10.1e-20 in a resolved run",
     "z0": "separation at which van der Waals force and pull-off force are equal, m",
     "friction": "mu_f of grain and carrier",
     "wall_friction": "mu of carrier and wall",

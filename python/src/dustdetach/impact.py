@@ -36,6 +36,9 @@ GRAIN_MODULUS = 1 / ((1 - 0.3**2) / 75e9 + (1 - 0.3**2) / 210e9)
 #: time steps that resolve an oscillation of a grain on its carrier
 LEAST_GRAIN_STEPS = 30
 
+#: 2 zeta omega dt, the share of its speed that a grain loses to damping in a step: an explicit damper needs it small
+MOST_DAMPING_A_STEP = 0.25
+
 #: the most grains of a resolved run, about 4 GB
 MOST_RESOLVED_GRAINS = 100_000
 
@@ -156,10 +159,13 @@ class Impact:
                 f"{MOST_RESOLVED_GRAINS}; allowed: {smallest:.3g} to {self.carrier_diameter:g} m at this coverage"
             )
         longest = self.grain_period / LEAST_GRAIN_STEPS
+        if self.grain_damping > 0:
+            longest = min(longest, MOST_DAMPING_A_STEP * self.grain_period / (4 * math.pi * self.grain_damping))
         if self.timestep > longest:
             raise InvalidInput(
                 f"--timestep: {self.timestep:g} s does not resolve the contact of a grain, which oscillates in "
-                f"{self.grain_period:.3g} s; allowed: above 0 and at most {longest:.3g} s"
+                f"{self.grain_period:.3g} s with the damping ratio {self.grain_damping:g}; allowed: above 0 and at "
+                f"most {longest:.3g} s"
             )
         if self.hertz_contact_time > LONGEST_RESOLVED_CONTACT:
             # at a given speed the contact time is proportional to the diameter

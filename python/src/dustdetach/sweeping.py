@@ -89,6 +89,12 @@ def sweep(
         raise InvalidInput("--jobs: with --executor mpi the number of ranks is mpirun's; allowed: 1")
 
     build = Build()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InvalidInput(f"--out: {folder}: {error.strerror}; allowed: the name of a folder") from None
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InvalidInput(f"--out: {folder} cannot be written to; allowed: the name of a folder that can")
     cases = list(dict.fromkeys(cases))
     if executor == "mpi":
         return _sweep_on_ranks(cases, folder, build, progress)
