@@ -196,3 +196,8 @@ def test_a_missing_plugin_stops_the_sweep(tmp_path, command, monkeypatch):
     assert process.returncode == 1
     assert "run ./bootstrap build or set DUSTDETACH_PLUGIN" in process.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_takes_no_files_is_named_before_any_work():
+    with pytest.raises(InvalidInput, match="--out: /proc/nowhere"):
+        sweep(CASES, "/proc/nowhere")

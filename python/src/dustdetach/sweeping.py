@@ -13,6 +13,7 @@ import json
 import multiprocessing
 import os
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -89,12 +90,7 @@ def sweep(
         raise InvalidInput("--jobs: with --executor mpi the number of ranks is mpirun's; allowed: 1")
 
     build = Build()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InvalidInput(f"--out: {folder}: {error.strerror}; allowed: the name of a folder") from None
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise InvalidInput(f"--out: {folder} cannot be written to; allowed: the name of a folder that can")
+    _check_writable(folder)
     cases = list(dict.fromkeys(cases))
     if executor == "mpi":
         return _sweep_on_ranks(cases, folder, build, progress)
@@ -104,6 +100,16 @@ def sweep(
     else:
         outcomes = _in_processes(folder, build, pending, jobs)
     return _collect(cases, len(pending), outcomes, folder, build, progress)
+
+
+def _check_writable(folder: Path) -> None:
+    """Before hours of work: whether the folder, or the one in which it will be made, takes files; leaves none."""
+    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    try:
+        with tempfile.TemporaryDirectory(dir=there):
+            pass
+    except OSError as error:
+        raise InvalidInput(f"--out: {folder}: {error.strerror}; allowed: a folder that can be written to") from None
 
 
 def _collect(
