@@ -7,12 +7,12 @@ Grain i of the texture is the same in both methods. Writes impacts/fates.csv and
 
 import csv
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 from dustdetach import Impact, run
+from dustdetach.frames import Frame, frame_sizes, read_frames
 from dustdetach.pictures import read_fates
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -34,24 +34,12 @@ KEYS = (
 KEYS += ("touching_before", "touching_after")
 
 
-def frames(path: Path) -> Iterator[NDArray[np.float64]]:
-    """Each frame: ID, type, x, y, z, radius, ID of the carrier; sorted by ID."""
-    with open(path) as stream:
-        for line in stream:
-            if line.startswith("ITEM: NUMBER"):
-                number = int(next(stream))
-            elif line.startswith("ITEM: ATOMS"):
-                rows = np.array([next(stream).split() for _ in range(number)], dtype=float)
-                yield rows[np.argsort(rows[:, 0])]
-
-
-def grains(frame: NDArray[np.float64], number: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def grains(frame: Frame, number: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Places relative to the carrier's centre (not a number where a grain has left the box), and who is tied."""
     places, tied = np.full((number, 3), np.nan), np.zeros(number, dtype=bool)
-    rows = frame[frame[:, 1] == 2]
-    ids = rows[:, 0].astype(int) - 2  # the carrier is atom 1
-    places[ids] = rows[:, 2:5] - frame[0, 2:5]
-    tied[ids] = rows[:, 6] > 0
+    indices = frame.ids - 2  # the carrier is atom 1
+    places[indices] = frame.centres - frame.carrier
+    tied[indices] = frame.tied
     return places, tied
 
 
@@ -68,15 +56,10 @@ def examine(speed: float) -> tuple[dict[str, float], NDArray, NDArray, NDArray]:
         run(Impact(speed=speed), events=events)
         number = resolved.grains
         predicted = read_fates(events, number) > 0
-        start, _ = grains(next(frames(dump)), number)
-        ever_lost, came_back, tied = (
-            np.zeros(number, dtype=bool),
-            np.zeros(number, dtype=bool),
-            None,
-        )
-        for index, frame in enumerate(frames(dump)):
-            if index == 0:
-                continue  # before the first step no neck is known
+        first, *others = read_frames(dump, list(frame_sizes(dump)))
+        start, _ = grains(first, number)
+        ever_lost, came_back = np.zeros(number, dtype=bool), np.zeros(number, dtype=bool)
+        for frame in others:
             end, tied = grains(frame, number)
             came_back |= ever_lost & tied
             ever_lost |= ~tied

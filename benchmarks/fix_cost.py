@@ -13,12 +13,13 @@ Instructions are counted besides if valgrind is there: they do not depend on the
 import argparse
 import json
 import os
-import platform
 import re
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
+
+from machine import description
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
@@ -74,10 +75,7 @@ def main() -> None:
     parser.add_argument("--repeat", type=int, default=9)
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
-    cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-    version = subprocess.run([LMP, "-h"], capture_output=True, text=True, check=True).stdout.splitlines()[1].split(" - ")[1]
-    result: dict = {"machine": f"{cpu[1] if cpu else platform.processor()}, {os.cpu_count()} cores", "lammps": version,
-                    "compiler": "Release, as ./bootstrap build", "repeats": args.repeat}
+    result: dict = {**description(LMP), "repeats": args.repeat}
     with tempfile.TemporaryDirectory() as folder:
         paths = decks(Path(folder))
         for case, variables in CASES.items():

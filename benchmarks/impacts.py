@@ -27,6 +27,7 @@ import matplotlib.pyplot as plt
 from dustdetach.figures import draw
 from dustdetach.impact import PARAMETERS
 from dustdetach.result import Result, read_csv
+from machine import processor
 
 HERE = Path(__file__).resolve().parent / "impacts"
 # where a table's cases have their partners: a case and its variant differ in this parameter alone
@@ -91,15 +92,6 @@ def decks(folder: Path, name: str) -> Path:
         )
         (folder / deck.name).write_text(text)
     return folder
-
-
-def processor() -> str:
-    info = Path("/proc/cpuinfo")
-    lines = info.read_text().splitlines() if info.exists() else []
-    return next(
-        (line.split(":")[1].strip() for line in lines if line.startswith("model name")),
-        platform.processor(),
-    )
 
 
 # --- reading ---------------------------------------------------------------------------------------------

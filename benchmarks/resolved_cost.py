@@ -18,12 +18,13 @@ Instructions are counted besides if valgrind is there: they do not depend on the
 import argparse
 import json
 import os
-import platform
 import re
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
+
+from machine import description
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
@@ -331,16 +332,7 @@ def main() -> None:
     parser.add_argument("--parts", default=",".join(PARTS), help="the others keep their results in FILE")
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
-    cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-    version = (
-        subprocess.run([LMP, "-h"], capture_output=True, text=True, check=True).stdout.splitlines()[1].split(" - ")[1]
-    )
-    result: dict = {
-        "machine": f"{cpu[1] if cpu else platform.processor()}, {os.cpu_count()} cores",
-        "lammps": version,
-        "compiler": "Release, as ./bootstrap build",
-        "parts": {},
-    }
+    result: dict = {**description(LMP), "parts": {}}
     if args.out and args.out.exists():
         result["parts"] = json.loads(args.out.read_text())["parts"]
     with tempfile.TemporaryDirectory() as folder:

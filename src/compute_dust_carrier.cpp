@@ -20,7 +20,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace Granular_NS;
@@ -59,10 +58,11 @@ void ComputeDustCarrier::init()
   pair = dynamic_cast<PairGranular *>(force->pair);
   if (!pair) error->all(FLERR, "Compute dust/carrier needs pair_style granular, not {}", force->pair_style ? force->pair_style : "none");
   history = nullptr;
-  bool known = false;
+  adhesive.resize(pair->nmodels);
   for (int m = 0; m < pair->nmodels; m++)
-    known = known || dynamic_cast<const GranSubModNormalJKRVdW *>(pair->models_list[m]->normal_model);
-  if (!known) error->all(FLERR, "Compute dust/carrier needs a pair_coeff with the normal model jkr/vdw, which knows necks");
+    adhesive[m] = dynamic_cast<const GranSubModNormalJKRVdW *>(pair->models_list[m]->normal_model);
+  if (std::all_of(adhesive.begin(), adhesive.end(), [](const auto *model) { return !model; }))
+    error->all(FLERR, "Compute dust/carrier needs a pair_coeff with the normal model jkr/vdw, which knows necks");
 }
 
 /* ----------------------------------------------------------------------
@@ -97,8 +97,7 @@ void ComputeDustCarrier::compute_peratom()
       for (int jj = 0; jj < list->numneigh[i]; jj++) {
         if (!history->firstflag[i][jj]) continue;
         const int j = list->firstneigh[i][jj] & NEIGHMASK;
-        const GranularModel *model = pair->models_list[pair->types_indices[type[i]][type[j]]];
-        const auto *normal = dynamic_cast<const GranSubModNormalJKRVdW *>(model->normal_model);
+        const auto *normal = adhesive[pair->types_indices[type[i]][type[j]]];
         if (!normal || normal->neck_in(history->firstvalue[i] + size * jj) == 0.0) continue;
         double &a = vector_atom[i], &b = vector_atom[j];
         // a carrier keeps its own ID
@@ -149,8 +148,7 @@ void ComputeDustCarrier::compute_vector()
   for (int a = 1; a <= ntypes; a++)
     for (int b = a; b <= ntypes; b++) {
       if (!is_carriers[a] && !is_carriers[b]) continue;
-      const GranularModel *model = pair->models_list[pair->types_indices[a][b]];
-      const auto *normal = dynamic_cast<const GranSubModNormalJKRVdW *>(model->normal_model);
+      const auto *normal = adhesive[pair->types_indices[a][b]];
       if (!normal) continue;
       const auto &events = normal->last_events;
       const bigint steps[3] = {events.neck, events.slide, events.roll};

@@ -83,8 +83,8 @@ void FixDustDetach::parse(int narg, char **arg)
     }
     const std::string key = arg[iarg];
     if (key == "stiffen") error->all(FLERR, "Fix dust/detach stiffen is not available yet");
-    if (key != "friction" && key != "rolling" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" && key != "rotation" &&
-        key != "mass" && key != "emit")
+    if (key != "friction" && key != "rolling" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" &&
+        key != "rotation" && key != "mass" && key != "emit")
       error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
                  "friction, rolling, tangential, criteria, every, rows, write, rotation, orientation, mass or emit", key);
     options.need(iarg, 1, narg, arg);

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 
-static constexpr double TWICE_ROOT = 3.6342411856642793;    // 2 6^(1/3)
-
 /* ----------------------------------------------------------------------
    y = sqrt(x) solves y^4 - (2/3) y = D with D = d/(2 6^(1/3)). It is the larger root of y^2 - m y + s, where z = m^2
    solves z^3 + 4 D z = 4/9; Cardano's cube roots u, v of z = u + v have the product -4 D/3.
@@ -15,7 +13,7 @@ static constexpr double TWICE_ROOT = 3.6342411856642793;    // 2 6^(1/3)
 
 double Dust::jkr_contact_radius(double d)
 {
-  const double D = std::max(d, -1.0) / TWICE_ROOT;
+  const double D = std::max(d, -1.0) / (2.0 * Dust::ROOT_6);
   const double p = 4.0 / 3.0 * D;
   const double u = std::cbrt(2.0 / 9.0 + std::sqrt(std::max(0.0, 4.0 / 81.0 + p * p * p)));
   const double v = -p / u;
@@ -35,7 +33,7 @@ double Dust::jkr_contact_radius(double d)
 
 double Dust::jkr_contact_radius(double d, double guess)
 {
-  const double D = d / TWICE_ROOT;
+  const double D = d / (2.0 * Dust::ROOT_6);
   double y = std::sqrt(std::fabs(guess));
   for (int k = 0; k < 4; k++) {
     const double y3 = y * y * y;

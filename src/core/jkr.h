@@ -38,6 +38,9 @@ inline double equilibrium_contact_radius(double gamma, double r12, double modulu
   return std::cbrt(9.0 * PI * gamma * r12 * r12 / modulus);
 }
 
+/*! 6^(1/3), in the lengths of the branch */
+constexpr double ROOT_6 = 1.8171205928321397;
+
 /*! Overlap without load, delta_0 = a0^2/(3 R_12) */
 inline double equilibrium_overlap(double a0, double r12)
 {
@@ -47,7 +50,7 @@ inline double equilibrium_overlap(double a0, double r12)
 /*! Gap to which the neck stretches before it breaks, delta_c = a0^2/(2 6^(1/3) R_12) */
 inline double breaking_gap(double a0, double r12)
 {
-  return a0 * a0 / (2.0 * 1.8171205928321397 * r12);    // 6^(1/3)
+  return a0 * a0 / (2.0 * ROOT_6 * r12);
 }
 
 /*! Work of a neck along the branch from the overlap 0 to its end, in F_c delta_c */

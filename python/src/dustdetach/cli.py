@@ -155,29 +155,36 @@ def _impact(options: argparse.Namespace, _: bool) -> int:
     if options.picture is None:
         from .runner import run
 
-        result = run(impact, watch=_Watch())
+        result = run(impact, watch=_watch())
     else:
         from .pictures import draw_impact
 
-        result = draw_impact(impact, _png(options.picture, "--picture"), _Watch())
+        result = draw_impact(impact, _png(options.picture, "--picture"), _watch())
     print(result.to_json() if options.json else _summary(result))
     return 0
 
 
-class _Watch:
-    """Simulated time on standard error: rewritten on a terminal, else a line every 10 us."""
+class _StatusLine:
+    """A line on standard error: rewritten on a terminal, else a new one for each mark."""
 
     def __init__(self) -> None:
-        self._terminal = sys.stderr.isatty()
-        self._told = 0
+        self.terminal = sys.stderr.isatty()
+        self._mark = 0
 
-    def __call__(self, seconds: float) -> None:
-        microseconds = seconds * 1e6
-        if self._terminal:
-            print(f"\r{microseconds:.1f} us\033[K", end="\r", file=sys.stderr, flush=True)
-        elif microseconds // 10 > self._told:
-            self._told = int(microseconds // 10)
-            print(f"{microseconds:.0f} us", file=sys.stderr, flush=True)
+    def tell(self, line: str, mark: int, end: str = "") -> None:
+        """Show the line; ``mark`` counts what is worth a line of its own, ``end`` is what follows on a terminal."""
+        if self.terminal:
+            print(f"\r{line}\033[K", end=end, file=sys.stderr, flush=True)
+        elif mark != self._mark:
+            print(line, file=sys.stderr, flush=True)
+            self._mark = mark
+
+
+def _watch() -> Callable[[float], None]:
+    """Simulated time, off a terminal every 10 us."""
+    line = _StatusLine()
+    digits = 1 if line.terminal else 0
+    return lambda seconds: line.tell(f"{seconds * 1e6:.{digits}f} us", int(seconds * 1e6 // 10), end="\r")
 
 
 def _summary(result: Result) -> str:
@@ -202,9 +209,7 @@ def _sweep(options: argparse.Namespace, speaks: bool) -> int:
     from .sweeping import CasesFailed, sweep
 
     cases = with_methods(named_or_file(options.cases), options.method)
-    if options.out.exists() and not options.out.is_dir():
-        raise InvalidInput(f"--out: {options.out} is a file; allowed: the name of a folder")
-    progress = _Progress() if speaks else None
+    progress = _progress() if speaks else None
     try:
         sweep(cases, options.out, jobs=options.jobs, executor=options.executor, progress=progress)
     except CasesFailed as error:
@@ -218,21 +223,17 @@ def _sweep(options: argparse.Namespace, speaks: bool) -> int:
     return 0
 
 
-class _Progress:
-    """A line on standard error: rewritten on a terminal, else a new one each tenth of the way."""
+def _progress() -> Callable[[int, int, float], None]:
+    """Cases done and time left, off a terminal at the start and at each tenth of the way."""
+    line = _StatusLine()
 
-    def __init__(self) -> None:
-        self._terminal = sys.stderr.isatty()
-        self._told = -1
+    def tell(done: int, total: int, left: float) -> None:
+        # marks from 1: the start is one
+        line.tell(
+            f"{done}/{total} cases, {left:.0f} s left", 1 + 10 * done // max(total, 1), "\n" if done == total else ""
+        )
 
-    def __call__(self, done: int, total: int, left: float) -> None:
-        part = 10 * done // max(total, 1)
-        line = f"{done}/{total} cases, {left:.0f} s left"
-        if self._terminal:
-            print(f"\r{line}\033[K", end="\n" if done == total else "", file=sys.stderr, flush=True)
-        elif part != self._told:
-            print(line, file=sys.stderr, flush=True)
-            self._told = part
+    return tell
 
 
 def _plot(options: argparse.Namespace, _: bool) -> int:

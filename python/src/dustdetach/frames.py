@@ -25,6 +25,7 @@ class Frame:
         box: lower and upper corner of the box (2, 3), m.
         carrier: centre of the carrier (3,), m.
         carrier_radius: m.
+        ids: of the grains (N,), ascending; a grain keeps its own.
         centres: of the grains (N, 3), m.
         radii: of the grains (N,), m.
         tied: whether a chain of necks ties the grain to the carrier (N,).
@@ -34,6 +35,7 @@ class Frame:
     box: NDArray[np.float64]
     carrier: NDArray[np.float64]
     carrier_radius: float
+    ids: NDArray[np.int64]
     centres: NDArray[np.float64]
     radii: NDArray[np.float64]
     tied: NDArray[np.bool_]
@@ -83,6 +85,7 @@ def _read_frame(stream: Iterator[str], step: int) -> Frame:
     if missing:
         raise ValueError(f"no column {missing[0]}")
     rows = np.array([next(stream).split() for _ in range(count)], dtype=float)
+    rows = rows[rows[:, names.index("id")].argsort()]
     column = {name: rows[:, names.index(name)] for name in COLUMNS}
     places = np.column_stack([column[name] for name in "xyz"])
     carriers = column["type"] == CARRIER_TYPE
@@ -94,6 +97,7 @@ def _read_frame(stream: Iterator[str], step: int) -> Frame:
         box,
         places[carriers][0],
         float(column["radius"][carriers][0]),
+        column["id"][grains].astype(np.int64),
         places[grains],
         column["radius"][grains],
         (column["c_tied"][grains] > 0) | (step == 0),

@@ -100,10 +100,13 @@ def run(
 @contextmanager
 def _watched(lmp: Any, watch: Watch | None) -> Iterator[None]:
     """Tell ``watch`` how far the run is while LAMMPS holds this thread."""
+    if watch is None:
+        yield
+        return
     over = threading.Event()
 
     def tell() -> None:
-        while watch and not over.wait(1.0):
+        while not over.wait(1.0):
             watch(lmp.extract_global("ntimestep") * lmp.extract_global("dt"))
 
     thread = threading.Thread(target=tell, daemon=True)
