@@ -61,14 +61,16 @@ void CreateDust::command(int narg, char **arg)
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
   const int before = atom->nlocal;
   tagint tag = highest;
-  for (const Carrier &carrier : carriers)
+  for (const Carrier &carrier : carriers) {
+    const Dust::Quaternion orientation = options.orientation(static_cast<tagint>(carrier.tag));
     for (const Dust::Grain &grain : texture.grains) {
       tag++;    // the same ID on any number of ranks
       const double r12 = Dust::effective_radius(carrier_radius, grain.radius);
       const double a0 = Dust::equilibrium_contact_radius(options.surface_energy, r12, options.modulus());
       const double distance = carrier_radius + grain.radius - Dust::equilibrium_overlap(a0, r12);
       double arm[3], x[3], turning[3];
-      MathExtra::scale3(distance, grain.n, arm);
+      orientation.to_space(grain.n, arm);
+      MathExtra::scale3(distance, arm);
       MathExtra::add3(carrier.x, arm, x);
       MathExtra::cross3(carrier.omega, arm, turning);
       imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
@@ -84,6 +86,7 @@ void CreateDust::command(int narg, char **arg)
       MathExtra::add3(carrier.v, turning, atom->v[i]);
       MathExtra::copy3(carrier.omega, atom->omega[i]);
     }
+  }
   atom->data_fix_compute_variable(before, atom->nlocal);
 
   bigint made = atom->nlocal - before;

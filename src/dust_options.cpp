@@ -29,7 +29,7 @@ static constexpr double UNSET = -1.0;
 
 DustOptions::DustOptions(LAMMPS *lmp, const std::string &command) :
     Pointers(lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, command(command),
-    diameter(0.0), coverage(UNSET), distributed(false), sizes{}, seed(0), bare_given(false)
+    diameter(0.0), coverage(UNSET), distributed(false), sizes{}, seed(0), bare_given(false), orientation_seed(0)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, "{} needs atoms with radius and mass of their own, such as atom_style sphere", command);
@@ -124,8 +124,14 @@ int DustOptions::parse(int iarg, int narg, char **arg)
   }
   if (key == "orientation") {
     need(iarg, 1, narg, arg);
-    only(iarg, arg, "same");
-    return iarg + 2;
+    const std::string value = arg[iarg + 1];
+    check(iarg, 1, arg, value == "same" || value == "random", "same or random SEED");
+    orientation_seed = 0;
+    if (value == "same") return iarg + 2;
+    need(iarg, 2, narg, arg);
+    orientation_seed = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
+    if (orientation_seed <= 0) error->all(FLERR, "{} orientation random seed {} must be above 0", command, arg[iarg + 2]);
+    return iarg + 3;
   }
   if (key == "distribution") {
     need(iarg, 3, narg, arg);
@@ -220,6 +226,8 @@ void DustOptions::complete()
 
   if (!file.empty() && distributed)
     error->all(FLERR, "{} distribution goes with texture monolayer: a texture file has its own diameters", command);
+  // a carrier that meets the wall with any side has no use for a side without grains
+  if (orientation_seed && !bare_given) bare.half_angle = 0.0;
 
   const bool si = strcmp(update->unit_style, "si") == 0;
   const auto absent = [&](double value, const char *key) {
@@ -234,6 +242,13 @@ void DustOptions::complete()
     const double reference[4] = {75.0e9, 0.3, 210.0e9, 0.3};
     std::copy_n(reference, 4, elastic);
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+Dust::Quaternion DustOptions::orientation(tagint tag) const
+{
+  return orientation_seed ? Dust::random_orientation(orientation_seed, tag) : Dust::Quaternion();
 }
 
 /* ---------------------------------------------------------------------- */

@@ -7,6 +7,7 @@
 
 #include "pointers.h"
 
+#include "core/quaternion.h"
 #include "core/texture.h"
 
 #include <string>
@@ -38,6 +39,10 @@ class DustOptions : protected Pointers {
   // the texture for carriers of a radius; writes it to a file if asked for
   Dust::Texture texture(double carrier_radius) const;
 
+  // how the carrier with an ID stands at first
+  Dust::Quaternion orientation(tagint) const;
+  bool same_orientation() const { return orientation_seed == 0; }
+
   double density, surface_energy, elastic[4];    // elastic: E and nu of the grains, E and nu of the carriers
   double modulus() const;                        // combined modulus E*
 
@@ -51,6 +56,7 @@ class DustOptions : protected Pointers {
   int seed;
   Dust::BareCap bare;
   bool bare_given;
+  int orientation_seed;    // 0: all the same
 
   int parse_texture(int iarg, int narg, char **arg);
   void read(const std::string &);

@@ -1,0 +1,46 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_QUATERNION_H
+#define DUST_CORE_QUATERNION_H
+
+#include <cstdint>
+
+namespace Dust {
+
+/*! Orientation of a body as a unit quaternion w + (x, y, z), held as w x y z: turns its axes into those of space */
+struct Quaternion {
+  double q[4] = {1.0, 0.0, 0.0, 0.0};
+
+  /*! A vector with components along the body's axes, in space */
+  void to_space(const double *body, double *space) const { turn(q[0], body, space); }
+
+  /*! A vector of space, along the body's axes */
+  void to_body(const double *space, double *body) const { turn(-q[0], space, body); }
+
+  /*! Turns the body for a time dt with the spin (of space, rad/time), which is that of the middle of the step */
+  void turn_by(const double *spin, double dt);
+
+  /*! The same along the body's own axes */
+  Quaternion operator*(const Quaternion &first) const;
+  Quaternion inverse() const { return {{q[0], -q[1], -q[2], -q[3]}}; }
+
+ private:
+  void turn(double w, const double *v, double *result) const
+  {
+    // v + 2 w (u x v) + 2 u x (u x v) with u = (x, y, z)
+    const double x = q[1], y = q[2], z = q[3];
+    const double tx = 2.0 * (y * v[2] - z * v[1]), ty = 2.0 * (z * v[0] - x * v[2]), tz = 2.0 * (x * v[1] - y * v[0]);
+    const double r[3] = {v[0] + w * tx + y * tz - z * ty, v[1] + w * ty + z * tx - x * tz, v[2] + w * tz + x * ty - y * tx};
+    for (int d = 0; d < 3; d++) result[d] = r[d];
+  }
+};
+
+/*! An orientation that depends on nothing but the two numbers, all orientations being equally likely (Shoemake,
+ *  Graphics Gems III, 1992, p. 124): a carrier has its own wherever it comes from and whoever asks */
+Quaternion random_orientation(uint64_t seed, uint64_t number);
+
+}    // namespace Dust
+
+#endif
