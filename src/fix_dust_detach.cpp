@@ -277,17 +277,19 @@ void FixDustDetach::post_force(int /*vflag*/)
 
 /* ---------------------------------------------------------------------- */
 
+static constexpr double NO_SPIN[3] = {0.0, 0.0, 0.0};
+
 void FixDustDetach::collide(int i)
 {
   if (state[i] == FREE_FLIGHT) {
     state[i] = start_collision();
-    collisions[state[i]].begin(atom->v[i]);
+    collisions[state[i]].begin(atom->v[i], NO_SPIN);
   }
   Dust::Collision &collision = collisions[state[i]];
   const double per_mass = 1.0 / atom->rmass[i];
   const double *f = atom->f[i];
   const double acceleration[3] = {f[0] * per_mass, f[1] * per_mass, f[2] * per_mass};
-  if (collision.step(*functions, acceleration, update->dt, attached[i], work)) record(i);
+  if (collision.step(*functions, acceleration, NO_SPIN, update->dt, attached[i], work)) record(i);
   if (collision.packed_size() > room) make_room(collision.packed_size());
 }
 

@@ -76,7 +76,7 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
   if (finest->radius == coarsest->radius) mass = mass_of(*finest);
 
   least = slow2 = INF;
-  largest = 0.0;
+  largest = largest_shell = 0.0;
   for (int bit = 0; bit < n; bit++) {
     const Grain &g = texture.grains[order[bit]];
     const double r12 = effective_radius(texture.carrier_radius, g.radius);
@@ -89,6 +89,7 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
     site.grain = order[bit];
     least = std::min(least, site.hold);
     largest = std::max(largest, site.hold);
+    largest_shell = std::max(largest_shell, site.shell);
     slow2 = std::min(slow2, site.hold * site.shell);
   }
 
@@ -124,9 +125,10 @@ DetachmentFunctions::Excess DetachmentFunctions::excess(int bit, const double *g
 
 /* ---------------------------------------------------------------------- */
 
-void Collision::begin(const double *velocity)
+void Collision::begin(const double *velocity, const double *spin)
 {
   std::copy_n(velocity, 3, v0);
+  std::copy_n(spin, 3, spin0);
   time = 0.0;
   nslid = nrolled = 0;
   start.clear();
@@ -138,11 +140,11 @@ void Collision::begin(const double *velocity)
 
 /* ---------------------------------------------------------------------- */
 
-bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, uint64_t *attached,
+bool Collision::step(const DetachmentFunctions &df, const double *a, const double *spin, double dt, uint64_t *attached,
                      Workspace &work)
 {
   time += dt;
-  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(a, dt);
+  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(a, spin, dt);
   const double size2 = dot(a, a);
   Split s = {INF, INF};
   if (!history.empty() && size2 <= history.peak2()) {
@@ -390,19 +392,32 @@ void Collision::estimate(const DetachmentFunctions &df, const double *velocity, 
 
 void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Workspace &work)
 {
-  const MotionBound bound(record, peak_acceleration(), df.rolling, df.carrier_radius);
-  if (!bound.any_may_leave(df.least, df.largest)) return;
+  const MotionBound bound(record, spin0, peak_acceleration(), df.rolling, df.carrier_radius);
+  if (!bound.any_may_leave(df.least, df.largest, df.largest_shell)) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   SurfaceMotion motion(df.friction, df.rolling);
   int bits[SurfaceMotion::LANES];
   // a collision of few time steps is followed in more
-  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / record.spans().size()) + 1;
+  const std::vector<ImpulseRecord::Span> &spans = record.spans();
+  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;
   const auto run = [&]() {
-    for (const ImpulseRecord::Span &span : record.spans()) {
-      const double *j = span.impulse, per_time = 1.0 / span.duration;
-      const double mean[3] = {j[0] * per_time, j[1] * per_time, j[2] * per_time};
-      for (int k = 0; k < parts; k++) motion.advance(mean, span.duration / parts);
+    double before[3];
+    std::copy_n(spin0, 3, before);
+    for (size_t i = 0; i < spans.size(); i++) {
+      // spin at the end: between the means of this span and the next
+      const ImpulseRecord::Span &span = spans[i], &next = spans[std::min(i + 1, spans.size() - 1)];
+      double mean[3], after[3];
+      for (int d = 0; d < 3; d++) {
+        mean[d] = span.impulse[d] / span.duration;
+        after[d] = 0.5 * (span.turn[d] / span.duration + next.turn[d] / next.duration);
+      }
+      for (int k = 1; k <= parts; k++) {
+        double spin[3];
+        for (int d = 0; d < 3; d++) spin[d] = before[d] + (after[d] - before[d]) * k / parts;
+        motion.advance(mean, spin, span.duration / parts);
+      }
+      std::copy_n(after, 3, before);
     }
     motion.release();
     for (int k = 0; k < motion.grains(); k++)
@@ -421,7 +436,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
       const auto excess = [&, turn = turn](const double *a) { return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed; };
       if (needed >= 0.0 && !history.any(excess, 1.0 + turn)) return;
       bits[motion.grains()] = bit;
-      motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius);
+      motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius, spin0);
       if (motion.full()) run();
     });
   run();
@@ -442,10 +457,10 @@ int Collision::lost_north(const DetachmentFunctions &df, const double *velocity,
 }
 
 /* ----------------------------------------------------------------------
-   v0, time, counts, sizes; then start, history and record. The window is opened anew, which changes no result.
+   v0, spin0, time, counts, sizes; then start, history and record. The window is opened anew, which changes no result.
 ------------------------------------------------------------------------- */
 
-static constexpr int PACKED_SCALARS = 9;
+static constexpr int PACKED_SCALARS = 12;
 
 int Collision::packed_size() const
 {
@@ -455,8 +470,8 @@ int Collision::packed_size() const
 void Collision::pack(double *buf) const
 {
   const std::vector<double> &numbers = history.numbers();
-  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), double(start.size()), double(numbers.size()),
-                   double(record.packed_size())})
+  for (double x : {v0[0], v0[1], v0[2], spin0[0], spin0[1], spin0[2], time, double(nslid), double(nrolled),
+                   double(start.size()), double(numbers.size()), double(record.packed_size())})
     *buf++ = x;
   std::memcpy(buf, start.data(), start.size() * sizeof(uint64_t));
   record.pack(std::copy(numbers.begin(), numbers.end(), buf + start.size()));
@@ -464,13 +479,13 @@ void Collision::pack(double *buf) const
 
 void Collision::unpack(const double *buf)
 {
-  begin(buf);
-  time = buf[3];
-  nslid = static_cast<int>(buf[4]);
-  nrolled = static_cast<int>(buf[5]);
-  start.resize(static_cast<size_t>(buf[6]));
+  begin(buf, buf + 3);
+  time = buf[6];
+  nslid = static_cast<int>(buf[7]);
+  nrolled = static_cast<int>(buf[8]);
+  start.resize(static_cast<size_t>(buf[9]));
   std::memcpy(start.data(), buf + PACKED_SCALARS, start.size() * sizeof(uint64_t));
   const double *p = buf + PACKED_SCALARS + start.size();
-  history.assign(p, p + static_cast<size_t>(buf[7]));
-  record.unpack(p + static_cast<size_t>(buf[7]), static_cast<int>(buf[8]));
+  history.assign(p, p + static_cast<size_t>(buf[10]));
+  record.unpack(p + static_cast<size_t>(buf[10]), static_cast<int>(buf[11]));
 }

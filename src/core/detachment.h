@@ -71,6 +71,7 @@ class DetachmentFunctions {
   double carrier_radius;
   double mass;
   double least, largest;            // of hold
+  double largest_shell;
   double slow2;                     // no tangential lift-off below this square of a velocity
   std::vector<uint64_t> all;        // bits that hold a grain: all but the last ones of the last word
   // by bit: all that is asked of a grain in one cache line
@@ -130,16 +131,16 @@ struct Workspace {
  *   holds, g_t + k g_n is a convex function of g, so the accelerations that the history keeps decide. */
 class Collision {
  public:
-  /*! Starts with the velocity before the first step that has a contact force */
-  void begin(const double *velocity);
+  /*! Starts with the velocity and spin before the first step that has a contact force */
+  void begin(const double *velocity, const double *spin);
 
   /*! One time step: Eq. 2 and lift-off normal
    *  \param acceleration  contact force / carrier mass
    *  \param attached      bits of the grains; those that leave are cleared
    *  \param work          the grains that leave are appended to its list
    *  \return              true if any left */
-  bool step(const DetachmentFunctions &functions, const double *acceleration, double dt, uint64_t *attached,
-            Workspace &work);
+  bool step(const DetachmentFunctions &functions, const double *acceleration, const double *spin, double dt,
+            uint64_t *attached, Workspace &work);
 
   /*! Lift-off tangential, with the velocity at the first step without contact force: Eqs. 3b and 4-6 or INTEGRATE */
   bool end(const DetachmentFunctions &functions, const double *velocity, uint64_t *attached,
@@ -161,7 +162,7 @@ class Collision {
   void unpack(const double *buf);
 
  private:
-  double v0[3];
+  double v0[3], spin0[3];
   double time;
   int nslid, nrolled;               // of the grains that have left
   std::vector<uint64_t> start;      // attached at begin(), kept from when the first grain could leave

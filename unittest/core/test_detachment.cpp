@@ -17,6 +17,7 @@ using namespace Dust;
 namespace {
 
 constexpr double RP = 0.75e-3, RD = 10.0e-6;
+constexpr double NO_SPIN[3] = {0.0, 0.0, 0.0};
 const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9),
                           combined_modulus(75.0e9, 0.3, 210.0e9, 0.3), 0.3};
 const double GRAIN_MASS = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0;
@@ -98,9 +99,9 @@ Outcome by_collision(const Texture &texture, const DetachmentFunctions &function
   Workspace work;
   std::vector<Detachment> &detached = work.detached;
   Collision collision;
-  collision.begin(&h.before.x);
+  collision.begin(&h.before.x, NO_SPIN);
   for (size_t k = 0; k <= h.a.size(); k++) {
-    if (k < h.a.size()) collision.step(functions, &h.a[k].x, h.dt, attached.data(), work);
+    if (k < h.a.size()) collision.step(functions, &h.a[k].x, NO_SPIN, h.dt, attached.data(), work);
     else collision.end(functions, &h.after.x, attached.data(), work);
     for (const Detachment &d : detached) {
       EXPECT_EQ(out.left.count(functions.grain(d.bit)), 0u) << "a grain left twice";
@@ -287,8 +288,8 @@ TEST(Detachment, RearGrainsFlyOffWithWhatFrictionLeaves)
   Workspace work;
   std::vector<Detachment> &detached = work.detached;
   Collision collision;
-  collision.begin(&h.before.x);
-  for (const Vec &a : h.a) collision.step(functions, &a.x, h.dt, attached.data(), work);
+  collision.begin(&h.before.x, NO_SPIN);
+  for (const Vec &a : h.a) collision.step(functions, &a.x, NO_SPIN, h.dt, attached.data(), work);
   detached.clear();
   ASSERT_TRUE(collision.end(functions, &h.after.x, attached.data(), work));
   EXPECT_NEAR(collision.duration(), h.a.size() * h.dt, 1.0e-15);
