@@ -54,7 +54,7 @@ class FixDustDetach : public Fix {
   // what the input asks for
   DustOptions options;
   Dust::Criteria criteria;
-  double friction, rolling;
+  double friction, rolling, damping;
   int every;
   bool keep_rows;
   void parse(int, char **);

@@ -65,6 +65,17 @@ class SurfaceMotion {
 
   bool attached(int grain) const { return here[grain] > 0.0; }
 
+  /*! F_n/m_d at an acceleration of the carrier */
+  double outward_force(int grain, const double *a) const
+  {
+    double w2 = 0.0, an = 0.0;
+    for (int d = 0; d < 3; d++) {
+      w2 += velocity(grain, d) * velocity(grain, d);
+      an += a[d] * n[d][grain];
+    }
+    return w2 * per_shell[grain] - an;
+  }
+
   // the motion of a grain, at last when it left; vectors of the surface
   double direction(int grain, int d) const { return n[d][grain]; }
   double velocity(int grain, int d) const { return v[d][grain] + carried(grain, d) * shell[grain]; }    //!< w
