@@ -89,10 +89,10 @@ void NormalMotion::advance(const double *load, double dt, int steps)
       const double drag = damping * y2 * step, force = G[i] + 4.0 * y3 * (y3 - 1.0);
       const double u = ((1.0 - drag) * U[i] - step * force) / (1.0 + drag), d = D[i] + step * u;
       // y goes on as it did, and one step of Newton's method
-      const double guess = std::max(LEAST_Y, y[i] + step * u * slope[i]), g3 = guess * guess * guess;
+      const double along = y[i] + step * u * slope[i], guess = along > LEAST_Y ? along : LEAST_Y, g3 = guess * guess * guess;
       const double per = 1.0 / (ROOT_6 * (8.0 * g3 - 4.0 / 3.0));
-      const double next = guess + (d - ROOT_6 * (2.0 * g3 - 4.0 / 3.0) * guess) * per;
-      y[i] = std::min(std::max(LEAST_Y, next), guess + 0.1);
+      const double more = (d - ROOT_6 * (2.0 * g3 - 4.0 / 3.0) * guess) * per, next = guess + (more < 0.1 ? more : 0.1);
+      y[i] = next > LEAST_Y ? next : LEAST_Y;
       slope[i] = per;
       U[i] = u;
       D[i] = d;

@@ -20,7 +20,7 @@ namespace Dust {
  *   rolling          dxi/dt = R_12 (Omega - omega) x n, |xi| held at R_12 theta_crit
  *   its stiffness    k = 4 F_c (a/a0)^(3/2) = 2 F_c (1 + sqrt(1 - F_n/F_c))
  *
- * There is no normal motion: the contact follows its load at once. Dominik & Tielens, Philos. Mag. A 72, 783 (1995)
+ * There is no normal motion: the contact follows its load at once (normal_motion.h follows it as it rings). Dominik & Tielens, Philos. Mag. A 72, 783 (1995)
  * for rolling; the limit of friction is that of the detachment functions.
  *
  * Here all forces are per grain mass, c = F_c/m. In place of w, Omega and xi stand what a grain that turns with its carrier
