@@ -175,6 +175,6 @@ TEST(NormalMotion, SameAsAReferenceInTinySteps)
   }
   EXPECT_GT(left, 150);
   EXPECT_GT(stay, 150);
-  EXPECT_LT(close, 40);
+  EXPECT_LT(close, 60);
   EXPECT_LT(apart, 10);    // of 768
 }
