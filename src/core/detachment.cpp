@@ -466,7 +466,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
 {
   const bool rings = df.damping >= 0.0;
   const MotionBound bound(record, course.spin0, peak_acceleration(), df.rolling, df.carrier_radius);
-  if (!rings && !bound.any_may_leave(df.least, df.largest, df.reach)) return;
+  if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach))) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   SurfaceMotion motion(df.friction, df.rolling);
@@ -540,14 +540,15 @@ std::vector<Collision::Step> Collision::steps() const
   for (size_t i = 0; i < spans.size(); i++) {
     const bool last = i + 1 == spans.size();
     const ImpulseRecord::Span &span = spans[i], &next = spans[last ? i : i + 1];
+    const double mine = next.duration / (span.duration + next.duration);    // the last span is shorter than others
     for (int k = 1; k <= parts; k++) {
       const double done = static_cast<double>(k) / parts;
       Step step;
       step.dt = span.duration / parts;
       for (int d = 0; d < 3; d++) {
         step.acceleration[d] = span.impulse[d] / span.duration;
-        const double force = last ? 0.0 : 0.5 * (step.acceleration[d] + next.impulse[d] / next.duration);
-        const double turn = 0.5 * (span.turn[d] / span.duration + next.turn[d] / next.duration);
+        const double force = last ? 0.0 : mine * step.acceleration[d] + (1.0 - mine) * next.impulse[d] / next.duration;
+        const double turn = mine * span.turn[d] / span.duration + (1.0 - mine) * next.turn[d] / next.duration;
         step.after[d] = force0[d] + done * (force - force0[d]);
         step.spin[d] = turn0[d] + done * (turn - turn0[d]);
       }
