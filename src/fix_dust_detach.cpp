@@ -86,6 +86,7 @@ void FixDustDetach::parse(int narg, char **arg)
 {
   friction = strcmp(update->unit_style, "si") == 0 ? 0.3 : -1.0;    // the reference case, as in DustOptions
   rolling = 0.15;
+  damping = -1.0;    // quasi-static
   every = 1;
   keep_rows = rotation = true;
   stiffen_acceleration = stiffen_time = 1.0;
@@ -101,15 +102,18 @@ void FixDustDetach::parse(int narg, char **arg)
       continue;
     }
     const std::string key = arg[iarg];
-    if (key != "friction" && key != "rolling" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" &&
+    if (key != "friction" && key != "rolling" && key != "damping" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" &&
         key != "rotation" && key != "stiffen" && key != "mass" && key != "emit")
       error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
-                 "friction, rolling, tangential, criteria, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
+                 "friction, rolling, damping, tangential, criteria, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {
       friction = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, friction >= 0.0 && std::isfinite(friction), "at least 0");
+    } else if (key == "damping") {
+      damping = options.number(iarg, 1, arg);
+      options.check(iarg, 1, arg, damping >= 0.0 && std::isfinite(damping), "at least 0");
     } else if (key == "rolling") {
       rolling = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, rolling >= 0.0 && std::isfinite(rolling), "at least 0 (rad)");
@@ -167,7 +171,7 @@ void FixDustDetach::parse(int narg, char **arg)
 void FixDustDetach::build()
 {
   texture = options.texture(carrier_radius);
-  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling};
+  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling, damping};
   functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, criteria);
 
   // a number that tells this texture from another one in a restart file

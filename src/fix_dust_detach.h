@@ -56,7 +56,7 @@ class FixDustDetach : public Fix {
   // what the input asks for
   DustOptions options;
   Dust::Criteria criteria;
-  double friction, rolling;
+  double friction, rolling, damping;
   int every;
   bool keep_rows, rotation;
   double stiffen_acceleration, stiffen_time;    // what softened contacts give, times these, is what stiff ones would

@@ -7,6 +7,7 @@
 #include "geometry.h"
 #include "jkr.h"
 #include "motion_bound.h"
+#include "normal_motion.h"
 #include "surface_motion.h"
 
 #include <algorithm>
@@ -58,7 +59,8 @@ template <typename Visit> void each_bit(uint64_t word, Visit visit)
 /* ---------------------------------------------------------------------- */
 
 DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria) :
-    criteria(criteria), friction(material.friction), rolling(material.rolling), carrier_radius(texture.carrier_radius),
+    criteria(criteria), friction(material.friction), rolling(material.rolling), damping(material.damping),
+    carrier_radius(texture.carrier_radius),
     sites(texture.grains.size())
 {
   const int n = grains();
@@ -492,36 +494,28 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
 
 void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Workspace &work)
 {
+  const bool rings = df.damping >= 0.0;
   const MotionBound bound(record, course.spin0, peak_acceleration(), df.rolling, df.carrier_radius);
-  if (!bound.any_may_leave(df.least, df.largest, df.reach)) return;
+  if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach))) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   SurfaceMotion motion(df.friction, df.rolling);
+  NormalMotion ringing(df.damping);
   int bits[SurfaceMotion::LANES];
-  // a collision of few time steps is followed in more
-  const std::vector<ImpulseRecord::Span> &spans = record.spans();
-  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;
+  static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
+  const std::vector<Step> followed = steps();
   const auto run = [&]() {
-    double before[3];
-    std::copy_n(course.spin0, 3, before);
-    for (size_t i = 0; i < spans.size(); i++) {
-      // spin at the end: between the means of this span and the next
-      const ImpulseRecord::Span &span = spans[i], &next = spans[std::min(i + 1, spans.size() - 1)];
-      double mean[3], after[3];
-      for (int d = 0; d < 3; d++) {
-        mean[d] = span.impulse[d] / span.duration;
-        after[d] = 0.5 * (span.turn[d] / span.duration + next.turn[d] / next.duration);
-      }
-      for (int k = 1; k <= parts; k++) {
-        double spin[3];
-        for (int d = 0; d < 3; d++) spin[d] = before[d] + (after[d] - before[d]) * k / parts;
-        motion.advance(mean, spin, span.duration / parts);
-      }
-      std::copy_n(after, 3, before);
+    double load[SurfaceMotion::LANES];
+    for (const Step &step : followed) {
+      motion.advance(step.acceleration, step.spin, step.dt);
+      if (!rings) continue;
+      for (int k = 0; k < motion.grains(); k++) load[k] = motion.outward_force(k, step.after) / df.sites[bits[k]].hold;
+      ringing.advance(load, step.dt);
     }
     motion.release();
+    ringing.ring_out();
     for (int k = 0; k < motion.grains(); k++) {
-      if (motion.attached(k)) continue;
+      if (motion.attached(k) && !(rings && !ringing.attached(k))) continue;
       double n[3], w[3];
       for (int d = 0; d < 3; d++) {
         n[d] = motion.direction(k, d);
@@ -530,24 +524,70 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
       leave(df, bits[k], TANGENTIAL, n, w, nullptr, attached, work);
     }
     motion.clear();
+    ringing.clear();
   };
 
   for (int patch = 0; patch < df.words(); patch++)
     each_bit(attached[patch], [&](int k) {
       const int bit = patch * PATCH + k;
       const DetachmentFunctions::Site &site = df.sites[bit];
-      const auto [turn, centrifugal] = bound.of(site.n, site.hold, site.shell);
-      const double needed = site.hold - centrifugal;
-      const auto excess = [&, turn = turn](const Motion &m) {
-        const double *a = m.acceleration;
-        return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed;
-      };
-      if (needed >= 0.0 && !history.any(excess, 1.0 + turn, 0.0)) return;
-      bits[motion.grains()] = bit;
-      motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius, course.spin0);
+      if (!rings) {
+        const auto [turn, centrifugal] = bound.of(site.n, site.hold, site.shell);
+        const double needed = site.hold - centrifugal;
+        const auto excess = [&, turn = turn](const Motion &m) {
+          const double *a = m.acceleration;
+          return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed;
+        };
+        if (needed >= 0.0 && !history.any(excess, 1.0 + turn, 0.0)) return;
+      }
+      const double radius = site.shell - df.carrier_radius;
+      const int lane = motion.grains();
+      bits[lane] = bit;
+      motion.add(site.n, site.hold, radius, df.carrier_radius, course.spin0);
+      if (rings) {
+        constexpr double NONE[3] = {0.0, 0.0, 0.0};
+        const double r12 = effective_radius(df.carrier_radius, radius);
+        ringing.add(site.hold, breaking_gap(site.lever * radius, r12), motion.outward_force(lane, NONE) / site.hold);
+      }
       if (motion.full()) run();
     });
   run();
+}
+
+/* ----------------------------------------------------------------------
+   the course of the collision in steps small enough to follow grains. What is at the end of a span lies between the
+   means of this span and the next; contact forces end at 0
+------------------------------------------------------------------------- */
+
+std::vector<Collision::Step> Collision::steps() const
+{
+  const std::vector<ImpulseRecord::Span> &spans = record.spans();
+  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;    // a collision of few time steps
+  std::vector<Step> found;
+  found.reserve(parts * spans.size());
+  double force0[3] = {0.0, 0.0, 0.0}, turn0[3];
+  std::copy_n(course.spin0, 3, turn0);
+  for (size_t i = 0; i < spans.size(); i++) {
+    const bool last = i + 1 == spans.size();
+    const ImpulseRecord::Span &span = spans[i], &next = spans[last ? i : i + 1];
+    const double mine = next.duration / (span.duration + next.duration);    // the last span is shorter than others
+    for (int k = 1; k <= parts; k++) {
+      const double done = static_cast<double>(k) / parts;
+      Step step;
+      step.dt = span.duration / parts;
+      for (int d = 0; d < 3; d++) {
+        step.acceleration[d] = span.impulse[d] / span.duration;
+        const double force = last ? 0.0 : mine * step.acceleration[d] + (1.0 - mine) * next.impulse[d] / next.duration;
+        const double turn = mine * span.turn[d] / span.duration + (1.0 - mine) * next.turn[d] / next.duration;
+        step.after[d] = force0[d] + done * (force - force0[d]);
+        step.spin[d] = turn0[d] + done * (turn - turn0[d]);
+      }
+      found.push_back(step);
+    }
+    std::copy_n(found.back().after, 3, force0);
+    std::copy_n(found.back().spin, 3, turn0);
+  }
+  return found;
 }
 
 /* ---------------------------------------------------------------------- */

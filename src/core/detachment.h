@@ -45,6 +45,7 @@ struct Material {
   double modulus;     //!< combined modulus E* of grain and carrier
   double friction;    //!< mu_f
   double rolling = 0.15;    //!< theta_crit; only INTEGRATE uses it
+  double damping = -1.0;    //!< damping ratio of the contact; INTEGRATE then lets grains ring (normal_motion.h), below 0 not
 };
 
 /*! One texture made ready for evaluation; shared by all carriers, never changed */
@@ -74,7 +75,7 @@ class DetachmentFunctions {
   friend class Collision;
 
   Criteria criteria;
-  double friction, rolling;
+  double friction, rolling, damping;
   double carrier_radius;
   double mass;
   double least, largest;            // of hold
@@ -229,6 +230,11 @@ class Collision {
   void check_all(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
   void estimate(const DetachmentFunctions &functions, const Moment &last, uint64_t *attached, Workspace &work);
   void integrate(const DetachmentFunctions &functions, uint64_t *attached, Workspace &work);
+  struct Step {
+    double dt, acceleration[3];     // mean
+    double after[3], spin[3];       // acceleration and spin at the end
+  };
+  std::vector<Step> steps() const;
   // a grain leaves the place where it stuck, or one along the surface
   void leave_place(const DetachmentFunctions &functions, int bit, Mode mode, const Motion &motion, uint64_t *attached,
                    Workspace &work);
