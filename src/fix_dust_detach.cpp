@@ -35,7 +35,7 @@ static constexpr int FIXED = 1;    // in Domain::boundary
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
-    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), newcomers(true), mine{}, open_windows(0), too_soft(1.0),
+    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), began(nullptr), newcomers(true), mine{}, open_windows(0), too_soft(1.0),
     warned(false)
 {
   parse(narg, arg);
@@ -78,6 +78,7 @@ FixDustDetach::~FixDustDetach()
   memory->destroy(orientation);
   memory->destroy(angle);
   memory->destroy(window_mass);
+  memory->destroy(began);
   memory->destroy(array_atom);
 }
 
@@ -103,10 +104,10 @@ void FixDustDetach::parse(int narg, char **arg)
       continue;
     }
     const std::string key = arg[iarg];
-    if (key != "friction" && key != "rolling" && key != "damping" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" &&
+    if (key != "friction" && key != "rolling" && key != "damping" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" && key != "counts" &&
         key != "rotation" && key != "stiffen" && key != "mass" && key != "emit")
       error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
-                 "friction, rolling, damping, tangential, criteria, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
+                 "friction, rolling, damping, tangential, criteria, counts, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {
@@ -131,6 +132,8 @@ void FixDustDetach::parse(int narg, char **arg)
     } else if (key == "every") {
       every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
       options.check(iarg, 1, arg, every > 0, "at least 1");
+    } else if (key == "counts") {
+      criteria.count = utils::logical(FLERR, arg[iarg + 1], false, lmp);
     } else if (key == "rows") {
       keep_rows = utils::logical(FLERR, arg[iarg + 1], false, lmp);
     } else if (key == "rotation") {
@@ -315,23 +318,21 @@ void FixDustDetach::post_force(int /*vflag*/)
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
-  if (rotation && update->ntimestep % TURN_EVERY == 0) turn();
+  if (rotation) turn();
 
   for (int i = 0; i < nlocal; i++, f += 3) {
     // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
     uint64_t bits[3];
     std::memcpy(bits, f, sizeof(bits));
     const bool touches = (bits[0] | bits[1] | bits[2]) << 1;
-    if (!rotation && !touches && state[i] <= FREE_FLIGHT) continue;
+    if (!touches && state[i] <= FREE_FLIGHT) continue;
     if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
-    if (rotation)    // from the step before to this one
-      for (int d = 0; d < 3; d++) angle[i][d] += atom->omega[i][d] * update->dt;
     if (touches)
       collide(i);
     else if (state[i] >= 0)
       finish_collision(i, FREE_FLIGHT);
-    else
-      state[i] = FREE_FLIGHT;
+    else if (state[i] == AT_REST)
+      leave_contact(i);
   }
   if (update->ntimestep % every != 0) return;
   if (open_windows) close_window();
@@ -343,14 +344,20 @@ void FixDustDetach::post_force(int /*vflag*/)
 }
 
 /* ----------------------------------------------------------------------
-   the angles of a few steps may be summed, as they are small; at steps that depend on nothing else
+   from the step before to this one. Angles of a few steps may be summed, as they are small, at steps that depend on nothing
+   else. All atoms in one go: it costs less than to ask which are carriers.
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::turn()
 {
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
-    orientation[i].turn_by(angle[i], 1.0);
+  const int nlocal = atom->nlocal;
+  if (nlocal == 0) return;
+  double *sum = angle[0];
+  const double *omega = atom->omega[0], dt = update->dt;
+  for (int k = 0; k < 3 * nlocal; k++) sum[k] += dt * omega[k];
+  if (update->ntimestep % TURN_EVERY != 0) return;
+  for (int i = 0; i < nlocal; i++) {
+    if (state[i] != NO_CARRIER) orientation[i].turn_by(angle[i], 1.0);
     std::fill_n(angle[i], 3, 0.0);
   }
 }
@@ -374,16 +381,27 @@ Dust::Motion FixDustDetach::motion_of(int i) const
   return motion;
 }
 
+bool FixDustDetach::might_move(int i) const
+{
+  const double *f = atom->f[i];
+  const double mass = atom->rmass[i] * stiffen_time;
+  if (!rotation) return functions->might_move(Dust::dot(f, f), 0.0, 0.0, mass);
+  const double *torque = atom->torque[i], *omega = atom->omega[i];
+  return functions->might_move(Dust::dot(f, f), Dust::dot(torque, torque), Dust::dot(omega, omega), mass);
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixDustDetach::collide(int i)
 {
+  if (state[i] == AT_REST && !might_move(i)) return;
   const Dust::Motion motion = motion_of(i);
   if (state[i] == AT_REST && !functions->may_move(motion)) return;
+  if (state[i] == FREE_FLIGHT) began[i] = double(update->ntimestep);
   if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
   if (collision.step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
-  if (collision.packed_size() > room) make_room(collision.packed_size());
+  if (!collision.weak() && collision.packed_size() > room) make_room(collision.packed_size());
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
@@ -404,7 +422,6 @@ void FixDustDetach::finish_collision(int i, int next)
   Dust::Collision &collision = collisions[state[i]];
   const Dust::Motion motion = motion_of(i);
   if (collision.end(*functions, motion.spin, attached[i], work)) record(i);
-  array_atom[i][CONTACT_TIME] = collision.duration();
   array_atom[i][PEAK_ACCELERATION] = collision.peak_acceleration();
   mine.collisions += 1.0;
   mine.north += collision.lost_north(*functions, attached[i]);
@@ -412,6 +429,7 @@ void FixDustDetach::finish_collision(int i, int next)
   mine.rolling += collision.grains_that(Dust::ROLLING, *functions, attached[i]);
   idle.push_back(state[i]);
   state[i] = next;
+  if (next == FREE_FLIGHT) leave_contact(i);
 
   const double peak = collision.peak_acceleration();
   if (!warned && peak <= functions->least_hold() && peak * too_soft > functions->least_hold()) {
@@ -419,6 +437,12 @@ void FixDustDetach::finish_collision(int i, int next)
     error->warning(FLERR, "Fix dust/detach {}: grains of carrier {} stay only because its contacts are softer than the carrier "
                    "material: see keyword stiffen", id, atom->tag[i]);
   }
+}
+
+void FixDustDetach::leave_contact(int i)
+{
+  state[i] = FREE_FLIGHT;
+  array_atom[i][CONTACT_TIME] = (double(update->ntimestep) - began[i]) * stiffen_time * update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -590,7 +614,7 @@ double FixDustDetach::compute_vector(int n)
 double FixDustDetach::memory_usage()
 {
   const double words = functions ? functions->words() : 0;
-  double bytes = double(atom->nmax) * (sizeof(int) + words * sizeof(uint64_t) + (NCOLUMNS + 1 + orientation_size()) * sizeof(double));
+  double bytes = double(atom->nmax) * (sizeof(int) + words * sizeof(uint64_t) + (NCOLUMNS + 2 + orientation_size()) * sizeof(double));
   for (const Dust::Collision &collision : collisions) bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
   return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]);
 }
@@ -769,6 +793,7 @@ void FixDustDetach::grow_arrays(int nmax)
 {
   memory->grow(state, nmax, "dust/detach:state");
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
+  memory->grow(began, nmax, "dust/detach:began");
   memory->grow(array_atom, nmax, NCOLUMNS, "dust/detach:array_atom");
   if (oriented()) memory->grow(orientation, nmax, "dust/detach:orientation");
   if (rotation) memory->grow(angle, nmax, 3, "dust/detach:angle");
@@ -781,6 +806,7 @@ void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
 {
   state[j] = state[i];
   window_mass[j] = window_mass[i];
+  began[j] = began[i];
   std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), array_atom[j]);
   if (orientation) orientation[j] = orientation[i];
   if (angle) std::copy_n(angle[i], 3, angle[j]);
@@ -792,19 +818,19 @@ void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
 void FixDustDetach::set_arrays(int i)
 {
   state[i] = NO_CARRIER;
-  window_mass[i] = 0.0;
+  window_mass[i] = began[i] = 0.0;
   if (angle) std::fill_n(angle[i], 3, 0.0);
   std::fill_n(array_atom[i], static_cast<int>(NCOLUMNS), 0.0);
   newcomers = true;
 }
 
 /* ----------------------------------------------------------------------
-   layout: words of a texture or 0, state, columns, mass of the window, orientation, bits, collision
+   layout: words of a texture or 0, state, columns, mass of the window, first contact, orientation and angle, bits, collision
 ------------------------------------------------------------------------- */
 
 int FixDustDetach::fixed_size() const
 {
-  return 2 + NCOLUMNS + 1 + orientation_size() + (functions ? functions->words() : 0);
+  return 2 + NCOLUMNS + 2 + orientation_size() + (functions ? functions->words() : 0);
 }
 
 bool FixDustDetach::oriented() const
@@ -842,6 +868,7 @@ int FixDustDetach::pack(int i, double *buf) const
   *p++ = state[i] >= 0 ? 0 : state[i];
   p = std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), p);
   *p++ = window_mass[i];
+  *p++ = began[i];
   if (orientation) p = std::copy_n(orientation[i].q, 4, p);
   if (angle) p = std::copy_n(angle[i], 3, p);
   std::memcpy(p, attached[i], words * sizeof(uint64_t));
@@ -865,6 +892,7 @@ void FixDustDetach::unpack(int i, const double *buf)
   std::copy_n(p, static_cast<int>(NCOLUMNS), array_atom[i]);
   p += NCOLUMNS;
   window_mass[i] = *p++;
+  began[i] = *p++;
   open_windows = 2;
   if (orientation) std::copy_n(p, 4, orientation[i].q);
   if (angle) std::copy_n(p + 4, 3, angle[i]);

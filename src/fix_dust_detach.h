@@ -79,6 +79,7 @@ class FixDustDetach : public Fix {
   Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever: TURN_EVERY steps ago at most,
   double **angle;                   // with rotation: about which the carrier has turned since
   double *window_mass;    // lost in the window that is not complete yet
+  double *began;          // step at which the present contact did
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
   bool newcomers;         // atoms were added that may be carriers
   void adopt();
@@ -89,11 +90,13 @@ class FixDustDetach : public Fix {
   int start_collision();
   void drop_lost_collisions();
   Dust::Motion motion_of(int) const;
+  bool might_move(int) const;
   static constexpr int TURN_EVERY = 16;
   void turn();
   void collide(int);
   void begin_collision(int, const Dust::Motion &);
   void finish_collision(int, int);
+  void leave_contact(int);
   void spin_off(int);
 
   // what this rank has counted since the start, or since it read a restart file; whole numbers but for weight, the

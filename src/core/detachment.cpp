@@ -106,6 +106,8 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
   // all leave that feel c; without friction they roll at some force, too
   moving = std::clamp(least_to[SLIDING], 0.1 * least, least);
   if (criteria.ibrahim) moving = std::min({least_to[SLIDING], least_to[ROLLING], least});
+  still2 = moving * moving / 3.0;
+  per_arm2 = std::pow(reach / (0.4 * carrier_radius * carrier_radius), 2);
 
   patches.resize(words());
   for (int p = 0; p < words(); p++) {
@@ -135,11 +137,7 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
 
 bool DetachmentFunctions::may_move(const Motion &m) const
 {
-  const double a2 = dot(m.acceleration, m.acceleration), spin2 = dot(m.spin, m.spin);
-  const double alpha2 = dot(m.angular_acceleration, m.angular_acceleration), moving2 = moving * moving;
-  // (x + y + z)^2 <= 3 (x^2 + y^2 + z^2): no root for what rests or nearly so
-  if (3.0 * (a2 + reach * reach * (alpha2 + spin2 * spin2)) <= moving2) return false;
-  return std::sqrt(a2) + reach * (std::sqrt(alpha2) + spin2) > moving;
+  return std::sqrt(dot(m.acceleration, m.acceleration)) + reach * m.turning() > moving;
 }
 
 /* ----------------------------------------------------------------------
@@ -203,7 +201,6 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
   for (int d = 0; d < 3; d++) {
     c.impulse[d] += middle.acceleration[d] * dt;
     in_space.spin[d] += 0.5 * dt * middle.angular_acceleration[d];
-    c.spin[d] = in_space.spin[d];
   }
   const bool first = c.steps == 0.0;
   c.steps += 1.0;
@@ -212,7 +209,6 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
   const auto lively = [&c]() {
     if (c.steps - 1.0 - c.lively_end > c.lively_end - c.burst) c.burst = c.steps - 1.0;
     c.lively_end = c.steps;
-    c.lively = c;
   };
 
   const double size2 = dot(in_space.acceleration, in_space.acceleration);
@@ -221,8 +217,8 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
       for (int d = 0; d < 3; d++) c.turned[d] += middle.spin[d] * dt;
     if (!df.may_move(in_space)) {
       if (first || size2 > c.largest2) {
-        c.largest = in_space;
         c.largest2 = size2;
+        c.largest = in_space;
         std::copy_n(c.turned, 3, c.largest_turned);
         lively();
       }
@@ -237,7 +233,11 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
   const Motion m = in_space.along(c.now);
   const double turning = turns ? m.turning() : 0.0;
   const double most = std::sqrt(size2) + df.reach * turning;    // |g| on any grain
-  if (most > df.moving || size2 > history.peak2()) lively();
+  if (most > df.moving || size2 > history.peak2()) {
+    lively();
+    std::copy_n(in_space.spin, 3, c.spin);
+    c.lively = c;
+  }
 
   Split s = {INF, INF};
   if (!history.empty() && size2 <= history.peak2() && (!turns || most > df.least)) {
@@ -389,7 +389,7 @@ void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const Q
 {
   attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
   for (Mode met : {SLIDING, ROLLING})
-    course.count[met] += (now && df.excess(met, bit, *now) > 0.0) || has_met(met, df, bit);
+    if (df.criteria.count) course.count[met] += (now && df.excess(met, bit, *now) > 0.0) || has_met(met, df, bit);
   work.detached.push_back({bit, mode, {}, {}});
   if (!work.locate) return;
   axes.to_space(direction, work.detached.back().direction);
@@ -414,6 +414,7 @@ bool Collision::has_met(Mode mode, const DetachmentFunctions &df, int bit) const
 int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint64_t *attached) const
 {
   int n = static_cast<int>(course.count[mode]);
+  if (!df.criteria.count) return n;
   const bool weak = course.weak > 0.0;
   const Motion peak = weak ? largest_of_weak() : history.peak();
   if (weak && std::sqrt(course.largest2) + df.reach * peak.turning() <= df.least_to[mode]) return n;
@@ -443,7 +444,9 @@ double Collision::peak_acceleration() const
 bool Collision::end(const DetachmentFunctions &df, const double *spin, uint64_t *attached, Workspace &work)
 {
   Moment last = course.lively;
-  if (!at_rest()) {
+  if (at_rest()) {
+    if (course.weak > 0.0) return false;    // nothing has moved
+  } else {
     last = course;
     std::copy_n(spin, 3, last.spin);
   }

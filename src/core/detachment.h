@@ -33,7 +33,8 @@ enum Mode { NORMAL, TANGENTIAL, SLIDING, ROLLING, NMODES };
 
 /*! What makes grains detach */
 struct Criteria {
-  bool ibrahim = false;       //!< sliding and rolling detach too (they are counted always)
+  bool count = true;          //!< grains that meet the sliding and rolling criteria
+  bool ibrahim = false;       //!< sliding and rolling detach too
   //! no Eq. 3b, Eq. 4 alone, Eqs. 4-6, or each grain's own motion (surface_motion.h)
   enum { OFF, FRICTIONLESS, ESTIMATE, INTEGRATE } tangential = ESTIMATE;
 };
@@ -68,6 +69,14 @@ class DetachmentFunctions {
 
   /*! Whether inertia can make a grain slide (or leave) that moves with its carrier: if none can, it is at rest */
   bool may_move(const Motion &motion) const;
+  /*! False only if may_move() is: the same from squares, without a root or a division
+   *  \param force2, torque2, spin2  squares
+   *  \param mass                    of the carrier, over what `stiffen` makes of its acceleration */
+  bool might_move(double force2, double torque2, double spin2, double mass) const
+  {
+    // (x + y + z)^2 <= 3 (x^2 + y^2 + z^2); alpha = torque/(2/5 m R_p^2)
+    return force2 + per_arm2 * torque2 > (still2 - reach * reach * spin2 * spin2) * mass * mass;
+  }
   /*! Whether a carrier that nothing touches spins fast enough to throw off a grain */
   bool may_spin_off(double spin2) const { return reach * spin2 > least; }
 
@@ -82,6 +91,7 @@ class DetachmentFunctions {
   double reach;                     // largest shell
   double least_to[NMODES];          // least inertia force per mass that meets SLIDING or ROLLING for some grain
   double moving;                    // the one that can make a grain slide (or leave), within limits
+  double still2, per_arm2;          // moving^2/3; (reach/(2/5 R_p^2))^2
   double slow2;                     // no tangential lift-off below this square of a velocity
   std::vector<uint64_t> all;        // bits that hold a grain: all but the last ones of the last word
   // by bit: all that is asked of a grain in one cache line
@@ -142,10 +152,11 @@ struct Workspace {
  * slide. It ends with the first step without contact force: an isolated impact is followed from first contact to rebound, as
  * in the paper. Or it comes to rest: for QUIET times as long as it took, no inertia could move any grain, nor was the
  * acceleration larger than before. What came after its last lively step then does not count. In a bed of carriers this
- * ends the collision where neither a first contact nor a rebound could be told.
+ * ends the collision where neither a first contact nor a rebound could be told. Damped Hertz contacts with restitution
+ * from 0.3 on rebound before, if inertia could make a grain slide at all.
  *
  * It is weak until inertia first can make a grain slide. Most contacts of a bed stay weak: of that time only the sums and
- * the largest acceleration are kept.
+ * the largest acceleration are kept, and it rests after WEAK_QUIET times as long as it took.
  *
  * Vectors come in space. The frame of first contact is the carrier's axes at the first step; it does not turn with them later.
  *
@@ -172,7 +183,7 @@ class Collision {
   bool step(const DetachmentFunctions &functions, const Motion &motion, double dt, uint64_t *attached, Workspace &work);
 
   /*! Whether it has come to rest though the contact lasts */
-  bool at_rest() const { return course.steps - course.lively_end > QUIET * (course.lively_end - course.burst); }
+  bool at_rest() const { return course.steps - course.lively_end > (course.weak > 0.0 ? WEAK_QUIET : QUIET) * (course.lively_end - course.burst); }
 
   /*! Lift-off tangential, at the first step without contact force or at rest: Eqs. 3b and 4-6 or INTEGRATE
    *  \param spin  after the contact */
@@ -182,8 +193,8 @@ class Collision {
    *  velocity so far */
   int lost_north(const DetachmentFunctions &functions, const uint64_t *attached) const;
 
-  /*! Of the steps so far, at rest of those until then */
-  double duration() const { return at_rest() ? course.lively.time : course.time; }
+  double duration() const { return course.time; }    //!< of the steps so far
+  bool weak() const { return course.weak > 0.0; }
   double peak_acceleration() const;    //!< largest |contact acceleration| so far
   /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin(); where no inertia could make any slide,
    *  those that have met it at the largest acceleration */
@@ -195,7 +206,7 @@ class Collision {
   void unpack(const double *buf);
 
  private:
-  static constexpr double QUIET = 3.0;
+  static constexpr double QUIET = 3.0, WEAK_QUIET = 0.5;
 
   struct Moment {
     double time;
@@ -203,15 +214,16 @@ class Collision {
     double spin[3];
   };
   struct Course : Moment {        // up to now, in space
-    Quaternion frame, now;        // the carrier at first contact, and since it is not weak
-    double spin0[3];              // before contact
+    double weak;                  // 1 until inertia could make a grain slide, then 0
     double steps;                 // so far
     double burst, lively_end;     // of them, when the present or last lively ones began and ended
-    Moment lively;                // at their end
-    double weak;                  // 1 until inertia could make a grain slide, then 0
-    double turned[3];             // angle about which it turned in that time
-    Motion largest;               // of that time, with the angle so far
-    double largest2, largest_turned[3];
+    double largest2;              // square of the largest acceleration of the weak time
+    double turned[3];             // angle about which the carrier turned in that time
+    Quaternion frame, now;        // the carrier at first contact, and since it is not weak
+    double spin0[3];              // before contact
+    Moment lively;                // at the last lively step, when it is not weak
+    Motion largest;               // of the weak time, with the angle until then
+    double largest_turned[3];
     double count[NMODES];         // of the grains that have left, those that had met SLIDING and ROLLING
   } course;
   std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave

@@ -77,18 +77,20 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
   Vec now = h.spin;
   size_t first = 0, lively = 0;    // of the burst, and the last of it
   double peak = 0.0;
-  bool rests = false;
+  bool rests = false, weak = true;
   for (size_t k = 0; k < h.a.size() && !rests; k++) {
     const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
     spin[k] = now + 0.5 * h.dt * alpha;
     now = now + h.dt * alpha;
-    if (size(h.a[k]) + reach * (size(alpha) + dot(spin[k], spin[k])) > sliding || k == 0 || size(h.a[k]) > peak) {
+    const bool moves = size(h.a[k]) + reach * (size(alpha) + dot(spin[k], spin[k])) > sliding;
+    weak = weak && !moves;
+    if (moves || k == 0 || size(h.a[k]) > peak) {
       if (k > lively && k - lively - 1 > lively + 1 - first) first = k;
       lively = k;
     }
     peak = std::max(peak, size(h.a[k]));
     out.steps = k + 1;
-    rests = k - lively > 3 * (lively + 1 - first);
+    rests = k - lively > (weak ? 0.5 : 3.0) * (lively + 1 - first);
   }
   // as long as inertia has not been able to make a grain slide, the collision is weak: of that time the largest
   // acceleration stands for all, and the angles of its steps are summed
@@ -139,7 +141,7 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
         attached = false;
       }
     }
-    if (attached && dot(n0, dv) < 0.0 && criteria.tangential != Criteria::OFF) {
+    if (attached && !(rests && weak) && dot(n0, dv) < 0.0 && criteria.tangential != Criteria::OFF) {
       const Vec r = r_pd * n0, all = dv + cross(h.spin, r), vt0 = all - dot(all, n0) * n0;
       const Vec surface = cross(spin1, r), s0 = vt0 - surface;
       const double friction = criteria.tangential == Criteria::ESTIMATE ? 0.5 * m.friction * largest : 0.0;
