@@ -18,8 +18,8 @@ GRAIN_MASS = 3.141592653589793 / 6 * 20e-6**3 * 2700
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 DROP = {"carriers": "60", "tube": "8e-3", "settle": "0.04", "rest": "1e-3", "splash": "3e-3"}
-DRUM = {"carriers": "200", "drum": "20e-3", "rate": "150", "turns": "0.02", "settle": "5e-3"}
-POUR = {"carriers": "100", "time": "0.06", "slope": "60", "speed": "2"}
+DRUM = {"carriers": "200", "drum": "20e-3", "rate": "150", "turns": "0.04", "settle": "5e-3"}
+POUR = {"carriers": "100", "time": "0.1", "slope": "60", "speed": "3"}
 
 
 def run(name: str, folder: Path, **variables: str) -> subprocess.CompletedProcess:
@@ -65,7 +65,7 @@ def test_a_drum_turns_and_takes_its_carriers_along(tmp_path):
         places.append(sum(c[1] for c in carriers) / 200)
     assert len(places) > 2
     assert places[-1] < places[0]
-    assert number(r"after (\S+) turns", text) == pytest.approx(0.02, abs=1e-3)
+    assert number(r"after (\S+) turns", text) == pytest.approx(0.04, abs=1e-3)
 
 
 def test_the_drum_drags_at_the_speed_of_its_wall(tmp_path):
@@ -89,16 +89,16 @@ def test_a_heap_at_rest_keeps_its_dust(tmp_path):
     assert number(r"^at rest (\S+) kg", text) == 0
 
 
-def field_sum(folder: Path) -> float:
-    """Sum over all cells of all files."""
-    total = 0.0
+def field(folder: Path) -> dict[int, float]:
+    """Sum over all cells by the step at which the window ends."""
+    sums = {}
     for file in folder.glob("field.*.vtr"):
         text = file.read_text()
         cells = re.search(r"<CellData>\s*<DataArray[^>]*>(.*?)</DataArray>", text, re.DOTALL)[1].split()
         extent = [int(word) for word in re.search(r'WholeExtent="([^"]*)"', text)[1].split()]
         assert len(cells) == extent[1] * extent[3] * extent[5]
-        total += sum(map(float, cells))
-    return total
+        sums[int(file.name.split(".")[1])] = sum(map(float, cells))
+    return sums
 
 
 @pytest.mark.parametrize("every", ["100", "7"])
@@ -108,7 +108,7 @@ def test_the_source_field_holds_what_came_off(tmp_path, every):
     detached = rows[-1]["f_dust[3]"] + rows[-1]["f_dust[4]"]
     assert rows[0]["f_dust"] == 0 < detached
     # a number for each cell and window, printed to the last digit
-    assert field_sum(tmp_path) == pytest.approx(detached * GRAIN_MASS, rel=1e-12)
+    assert sum(field(tmp_path).values()) == pytest.approx(detached * GRAIN_MASS, rel=1e-12)
 
 
 @pytest.mark.parametrize("launcher", [[], ["mpirun", "--oversubscribe", "-np", "2"]], ids=["serial", "two ranks"])
@@ -122,10 +122,17 @@ def test_a_cfd_code_reads_what_came_off(tmp_path, launcher):
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     total = number(r"cells got (\S+) kg", done.stdout)
     assert total == number(r"the fix counted (\S+) kg", done.stdout) > 0
-    # window by window the same, and the first grains fly down
     windows = [line.split() for line in done.stdout.splitlines() if "momentum" in line]
-    assert sum(float(words[2]) for words in windows) == pytest.approx(total, rel=1e-6)
-    assert float(windows[0][7]) / float(windows[0][2]) == pytest.approx(-(2 * 9.81) ** 0.5, rel=0.5)
+    # window by window what LAMMPS' own grid holds; on two ranks a heap ends in other collisions
+    if not launcher:
+        output("in.drop", tmp_path, **DROP, field="field")
+        by_time = {words[0]: float(words[2]) for words in windows}
+        for step, mass in field(tmp_path).items():
+            if mass > 0 and f"{step * 2e-6:.6f}" in by_time:
+                assert by_time.pop(f"{step * 2e-6:.6f}") == pytest.approx(mass, rel=1e-6)
+        assert not by_time
+    # grains leave while their carriers are braked from the speed of the fall
+    assert -((2 * 9.81) ** 0.5) < float(windows[0][7]) / float(windows[0][2]) < -1
 
 
 def test_poured_carriers_come_with_their_grains_and_leave_with_the_rest(tmp_path):
