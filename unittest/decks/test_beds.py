@@ -18,7 +18,7 @@ GRAIN_MASS = 3.141592653589793 / 6 * 20e-6**3 * 2700
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 DROP = {"carriers": "60", "tube": "8e-3", "settle": "0.04", "rest": "1e-3", "splash": "3e-3"}
-DRUM = {"carriers": "200", "drum": "20e-3", "rate": "150", "turns": "0.04", "settle": "5e-3"}
+DRUM = {"carriers": "200", "drum": "20e-3", "lifter": "1e-3", "rate": "150", "turns": "0.04", "settle": "5e-3"}
 POUR = {"carriers": "100", "time": "0.1", "slope": "60", "speed": "3"}
 
 
@@ -70,7 +70,7 @@ def test_a_drum_turns_and_takes_its_carriers_along(tmp_path):
 
 def test_the_drum_drags_at_the_speed_of_its_wall(tmp_path):
     """No slip and no jump at the start: carriers at the wall come to move with it, and never faster."""
-    output("in.drum", tmp_path, **DRUM | {"turns": "0.05", "friction_wall": "5"}, dump="frames")
+    output("in.drum", tmp_path, **DRUM | {"turns": "0.05", "friction_steel": "5", "tilt": "0"}, dump="frames")
     lines = (tmp_path / "frames").read_text().split("ITEM: TIMESTEP\n")[-1].splitlines()[8:]
     wall = 2 * 3.141592653589793 * 150 / 60 * 10e-3
     speeds = []
@@ -157,6 +157,8 @@ def test_poured_carriers_come_with_their_grains_and_leave_with_the_rest(tmp_path
     [
         ("in.drum", "rate", "0"),
         ("in.drum", "fill", "0.7"),
+        ("in.drum", "lifter", "0.03"),
+        ("in.drum", "tilt", "70"),
         ("in.drum", "stiffen", "0.5"),
         ("in.drum", "carriers", "100"),
         ("in.drop", "height", "-1"),

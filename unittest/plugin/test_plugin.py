@@ -130,7 +130,7 @@ STATE = """write_dump all custom state id x y z vx vy vz omegax omegay omegaz fx
 # few grains until the carrier has left the wall; few carriers for a short time
 SHORTER = {
     "in.impact.resolved": "-var coverage 0.03 -var limit 6e-6 -var dump grains",
-    "in.drum": "-var carriers 200 -var drum 20e-3 -var turns 0.02 -var settle 5e-3 -var dump carriers",
+    "in.drum": "-var carriers 200 -var drum 20e-3 -var lifter 1e-3 -var turns 0.02 -var settle 5e-3 -var dump carriers",
     "in.drop": "-var carriers 60 -var tube 8e-3 -var settle 0.02 -var rest 2e-4 -var splash 2e-3 -var field field",
     "in.pour": "-var carriers 100 -var time 0.03 -var dump carriers",
 }
