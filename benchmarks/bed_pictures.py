@@ -90,14 +90,19 @@ def curve(axes, folder: Path, words: str) -> None:
 
 
 def drum(folder: Path) -> None:
-    """The bed before, and at the end of the run, and the curve."""
+    """The bed in the middle and at the end of half a turn, and the curve."""
     all_frames = frames(folder)
     steps = sorted(all_frames)
     figure, axes = plt.subplots(1, 3, figsize=(12, 4), layout="constrained", width_ratios=(1, 1, 1.1))
     for place, step in zip(axes, (steps[len(steps) // 2], steps[-1]), strict=False):
+        turned = 2 * np.pi * 0.5 * (step - steps[0]) / (steps[-1] - steps[0])
         carriers = draw_carriers(place, all_frames[step])
+        carriers.set_clim(0, 0.25)
         place.add_patch(plt.Circle((0, 0), 50, fill=False, **WALL))
-        place.set(xlim=(-51, 51), ylim=(-51, 51), title=f"{(step - steps[0]) / (steps[-1] - steps[0]) * 0.5:.2f} turns")
+        for angle in turned + np.pi / 2 * np.arange(4):    # the bars; about y, z turns towards x
+            along = np.array([np.cos(angle), -np.sin(angle)])
+            place.plot(*np.outer(along, (45, 50)), color="0.35", linewidth=3, solid_capstyle="butt")
+        place.set(xlim=(-51, 51), ylim=(-51, 51), title=f"{turned / 2 / np.pi:.2f} turns")
     bar(figure, axes[:2], carriers)
     curve(axes[2], folder, "time, s")
     save(figure, "drum")
