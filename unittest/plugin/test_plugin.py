@@ -127,8 +127,13 @@ def test_same_numbers_as_compiled_in(tmp_path, wall):
 STATE = """write_dump all custom state id x y z vx vy vz omegax omegay omegaz fx fy fz &
                 modify format float %.17g sort id
 """
-# a resolved impact of few grains, until the carrier has left the wall
-SHORTER = {"in.impact.resolved": "-var coverage 0.03 -var limit 6e-6 -var dump grains"}
+# few grains until the carrier has left the wall; few carriers for a short time
+SHORTER = {
+    "in.impact.resolved": "-var coverage 0.03 -var limit 6e-6 -var dump grains",
+    "in.drum": "-var carriers 200 -var drum 20e-3 -var lifter 1e-3 -var turns 0.02 -var settle 5e-3 -var dump carriers",
+    "in.drop": "-var carriers 60 -var tube 8e-3 -var settle 0.02 -var rest 2e-4 -var splash 2e-3 -var field field",
+    "in.pour": "-var carriers 100 -var time 0.03 -var dump carriers",
+}
 
 
 @pytest.mark.parametrize("deck", DECKS, ids=lambda deck: deck.name)
