@@ -5,16 +5,17 @@
 #include "create_dust.h"
 
 #include "core/jkr.h"
+#include "dust_atoms.h"
 #include "dust_options.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "group.h"
 #include "math_const.h"
 #include "math_extra.h"
+#include "math_special.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,15 +52,12 @@ void CreateDust::command(int narg, char **arg)
   const Dust::Texture texture = options.texture(carrier_radius);
   const std::vector<Carrier> carriers = all_carriers(group->bitmask[igroup]);
 
-  tagint highest = 0;
-  for (int i = 0; i < atom->nlocal; i++) highest = std::max(highest, atom->tag[i]);
-  MPI_Allreduce(MPI_IN_PLACE, &highest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  const tagint highest = DustAtoms::highest_tag(lmp);
   const double grains = double(texture.grains.size());
   if (double(highest) + grains * carriers.size() >= double(MAXTAGINT))
     error->all(FLERR, "Create_dust makes more atoms than LAMMPS has IDs for");
 
-  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
-  const int before = atom->nlocal;
+  DustAtoms atoms(lmp);
   tagint tag = highest;
   for (const Carrier &carrier : carriers) {
     const Dust::Quaternion orientation = options.orientation(static_cast<tagint>(carrier.tag));
@@ -68,34 +66,17 @@ void CreateDust::command(int narg, char **arg)
       const double r12 = Dust::effective_radius(carrier_radius, grain.radius);
       const double a0 = Dust::equilibrium_contact_radius(options.surface_energy, r12, options.modulus());
       const double distance = carrier_radius + grain.radius - Dust::equilibrium_overlap(a0, r12);
-      double arm[3], x[3], turning[3];
+      double arm[3], x[3], v[3];
       orientation.to_space(grain.n, arm);
       MathExtra::scale3(distance, arm);
       MathExtra::add3(carrier.x, arm, x);
-      MathExtra::cross3(carrier.omega, arm, turning);
-      imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
-      domain->remap(x, image);
-      if (!is_mine(x)) continue;
-
-      atom->avec->create_atom(type, x);
-      const int i = atom->nlocal - 1;
-      atom->tag[i] = tag;
-      atom->image[i] = image;
-      atom->radius[i] = grain.radius;
-      atom->rmass[i] = 4.0 / 3.0 * MathConst::MY_PI * grain.radius * grain.radius * grain.radius * options.density;
-      MathExtra::add3(carrier.v, turning, atom->v[i]);
-      MathExtra::copy3(carrier.omega, atom->omega[i]);
+      MathExtra::cross3(carrier.omega, arm, v);
+      MathExtra::add3(carrier.v, v, v);
+      atoms.create(type, tag, x, grain.radius, 4.0 / 3.0 * MathConst::MY_PI * MathSpecial::cube(grain.radius) * options.density, v,
+                   carrier.omega);
     }
   }
-  atom->data_fix_compute_variable(before, atom->nlocal);
-
-  bigint made = atom->nlocal - before;
-  MPI_Allreduce(MPI_IN_PLACE, &made, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  atom->natoms += made;
-  if (atom->map_style != Atom::MAP_NONE) {
-    atom->map_init();
-    atom->map_set();
-  }
+  const bigint made = atoms.finish();
   const auto wanted = static_cast<bigint>(grains * carriers.size());
   if (made != wanted)
     error->all(FLERR, "Create_dust: {} of {} grains lie outside the box: a carrier is closer to a border than a grain's "
@@ -128,17 +109,4 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit) const
   MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, world);
   std::sort(all.begin(), all.end(), [](const Carrier &a, const Carrier &b) { return a.tag < b.tag; });
   return all;
-}
-
-/* ----------------------------------------------------------------------
-   each place of the box belongs to one rank; the upper border of a box that is not periodic to the last one
-------------------------------------------------------------------------- */
-
-bool CreateDust::is_mine(const double *x) const
-{
-  for (int d = 0; d < 3; d++) {
-    const bool last = !domain->periodicity[d] && domain->subhi[d] == domain->boxhi[d];
-    if (x[d] < domain->sublo[d] || (last ? x[d] > domain->subhi[d] : x[d] >= domain->subhi[d])) return false;
-  }
-  return true;
 }

@@ -31,7 +31,6 @@ class CreateDust : public Command {
     double tag, x[3], v[3], omega[3];
   };
   std::vector<Carrier> all_carriers(int) const;
-  bool is_mine(const double *) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -4,12 +4,21 @@
 
 #include "fix_dust_detach.h"
 
+#include "core/jkr.h"
+#include "dust_atoms.h"
+
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
+#include "fix_wall_gran.h"
+#include "force.h"
+#include "gran_sub_mod_normal.h"
+#include "granular_model.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "pair_granular.h"
 #include "update.h"
 
 #include <algorithm>
@@ -20,17 +29,20 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
+static constexpr int FIXED = 1;    // in Domain::boundary
+
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
-    attached(nullptr), window_mass(nullptr), newcomers(true), mine{}, open_windows(0)
+    attached(nullptr), orientation(nullptr), window_mass(nullptr), newcomers(true), mine{}, open_windows(0), too_soft(1.0),
+    warned(false)
 {
   parse(narg, arg);
   check_order();    // of what is there already; the rest before a run
 
   scalar_flag = vector_flag = global_freq = 1;
-  size_vector = 13;
+  size_vector = 14;
   extscalar = extvector = 0;
   peratom_flag = peratom_freq = 1;
   size_peratom_cols = NCOLUMNS;
@@ -39,6 +51,8 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   size_local_cols = NROW;
   restart_global = restart_peratom = create_attribute = 1;
   maxexchange_dynamic = 1;
+  force_reneighbor = lose_mass;    // carriers get lighter and atoms are created where neighbour lists are new
+  next_reneighbor = -1;
   make_room(0);
 
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
@@ -61,6 +75,7 @@ FixDustDetach::~FixDustDetach()
   }
   memory->destroy(state);
   memory->destroy(attached);
+  memory->destroy(orientation);
   memory->destroy(window_mass);
   memory->destroy(array_atom);
 }
@@ -72,7 +87,11 @@ void FixDustDetach::parse(int narg, char **arg)
   friction = strcmp(update->unit_style, "si") == 0 ? 0.3 : -1.0;    // the reference case, as in DustOptions
   rolling = 0.15;
   every = 1;
-  keep_rows = true;
+  keep_rows = rotation = true;
+  stiffen_acceleration = stiffen_time = 1.0;
+  lose_mass = false;
+  emit = 0;
+  bool mass_given = false;
 
   int iarg = 3;
   while (iarg < narg) {
@@ -82,11 +101,10 @@ void FixDustDetach::parse(int narg, char **arg)
       continue;
     }
     const std::string key = arg[iarg];
-    if (key == "stiffen") error->all(FLERR, "Fix dust/detach stiffen is not available yet");
     if (key != "friction" && key != "rolling" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" &&
-        key != "rotation" && key != "mass" && key != "emit")
+        key != "rotation" && key != "stiffen" && key != "mass" && key != "emit")
       error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
-                 "friction, rolling, tangential, criteria, every, rows, write, rotation, orientation, mass or emit", key);
+                 "friction, rolling, tangential, criteria, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {
@@ -110,13 +128,35 @@ void FixDustDetach::parse(int narg, char **arg)
       options.check(iarg, 1, arg, every > 0, "at least 1");
     } else if (key == "rows") {
       keep_rows = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+    } else if (key == "rotation") {
+      rotation = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+    } else if (key == "stiffen") {
+      const double factor = options.number(iarg, 1, arg);
+      options.check(iarg, 1, arg, factor >= 1.0 && std::isfinite(factor), "at least 1");
+      // Hertz: F ~ E delta^1.5, so that for the same impact F ~ E^0.4 and time ~ E^-0.4
+      stiffen_acceleration = std::pow(factor, 0.4);
+      stiffen_time = 1.0 / stiffen_acceleration;
+    } else if (key == "mass") {
+      lose_mass = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      mass_given = true;
+    } else if (value == "none") {
+      emit = 0;
     } else {
-      options.only(iarg, arg, key == "emit" ? "none" : "no");
+      options.check(iarg, 1, arg, utils::is_integer(value), "none or an atom type");
+      emit = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      options.check(iarg, 1, arg, emit >= 1 && emit <= atom->ntypes, fmt::format("none or from 1 to {}", atom->ntypes).c_str());
     }
     iarg += 2;
   }
   options.complete();
   if (friction < 0.0) error->all(FLERR, "Fix dust/detach needs keyword friction (it has a default with units si only)");
+  if (rotation && (!atom->omega_flag || !atom->torque_flag))
+    error->all(FLERR, "Fix dust/detach rotation yes needs atoms with spin and torque, such as atom_style sphere");
+  if (emit && mass_given && !lose_mass)
+    error->all(FLERR, "Fix dust/detach emit {} needs mass yes: grains bring the mass that their carriers lose", emit);
+  if (emit && igroup == 0)
+    error->all(FLERR, "Fix dust/detach emit {} needs a group of carriers without the emitted grains, not group all", emit);
+  if (emit) lose_mass = true;
 }
 
 /* ----------------------------------------------------------------------
@@ -151,7 +191,7 @@ void FixDustDetach::build()
 
 int FixDustDetach::setmask()
 {
-  return POST_NEIGHBOR | POST_FORCE;
+  return POST_NEIGHBOR | POST_FORCE | (lose_mass ? PRE_EXCHANGE : 0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -162,6 +202,7 @@ void FixDustDetach::init()
     error->all(FLERR, "Fix dust/detach works with run_style verlet, not with {}", update->integrate_style);
 
   check_order();
+  look_for_soft_contacts();
 
   if (functions) {
     const double radius = options.carrier_radius(igroup);
@@ -208,8 +249,13 @@ void FixDustDetach::check_order() const
 void FixDustDetach::setup(int /*vflag*/)
 {
   const double *const *f = atom->f;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && state[i] == FREE_FLIGHT && (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0)) collide(i);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || state[i] != FREE_FLIGHT) continue;
+    if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0)
+      collide(i);
+    else
+      spin_off(i);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -240,6 +286,8 @@ void FixDustDetach::adopt()
   newcomers = false;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || state[i] != NO_CARRIER) continue;
+    if (emit && atom->type[i] == emit)
+      error->one(FLERR, "Fix dust/detach emit {} is also the type of carrier {}", emit, atom->tag[i]);
     if (!DustOptions::same_size(atom->radius[i], carrier_radius))
       error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
                  atom->tag[i], 2.0 * atom->radius[i], 2.0 * carrier_radius);
@@ -247,11 +295,13 @@ void FixDustDetach::adopt()
     std::copy(functions->all_attached().begin(), functions->all_attached().end(), attached[i]);
     array_atom[i][ATTACHED] = functions->grains();
     mine.initial += functions->grains();
+    if (orientation) std::copy_n(options.orientation(atom->tag[i]).q, 4, orientation[i]);
+    if (lose_mass) atom->rmass[i] += functions->grains() * functions->mean_mass();
   }
 }
 
 /* ----------------------------------------------------------------------
-   here f holds contact forces only, and v of a carrier without one is its velocity before (or after) contact
+   here f holds contact forces only
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::post_force(int /*vflag*/)
@@ -265,44 +315,116 @@ void FixDustDetach::post_force(int /*vflag*/)
     uint64_t bits[3];
     std::memcpy(bits, f, sizeof(bits));
     const bool touches = (bits[0] | bits[1] | bits[2]) << 1;
-    if (!touches && state[i] < 0) continue;
+    if (!rotation && !touches && state[i] <= FREE_FLIGHT) continue;
     if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
+    if (rotation) turn(i);
     if (touches)
       collide(i);
+    else if (state[i] >= 0)
+      finish_collision(i, FREE_FLIGHT);
     else
-      rebound(i);
+      state[i] = FREE_FLIGHT;
   }
-  if (open_windows && update->ntimestep % every == 0) close_window();
+  if (update->ntimestep % every != 0) return;
+  if (open_windows) close_window();
+  if (lose_mass) {
+    int any = !losses.empty();
+    MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any) next_reneighbor = update->ntimestep + 1;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   as stiff contacts would move carrier i; its spin is half a step behind
+------------------------------------------------------------------------- */
+
+Dust::Motion FixDustDetach::motion_of(int i) const
+{
+  Dust::Motion motion = {};
+  const double per_mass = stiffen_acceleration / atom->rmass[i];
+  for (int d = 0; d < 3; d++) motion.acceleration[d] = atom->f[i][d] * per_mass;
+  if (!rotation) return motion;
+  constexpr double INERTIA = 0.4;    // of a sphere, as in fix nve/sphere
+  const double per_inertia = per_mass / (INERTIA * atom->radius[i] * atom->radius[i]);
+  for (int d = 0; d < 3; d++) {
+    motion.angular_acceleration[d] = atom->torque[i][d] * per_inertia;
+    motion.spin[d] = atom->omega[i][d];
+  }
+  return motion;
+}
+
+/* ---------------------------------------------------------------------- */
+
+Dust::Quaternion FixDustDetach::orientation_of(int i) const
+{
+  Dust::Quaternion q;
+  if (orientation) std::copy_n(orientation[i], 4, q.q);
+  return q;
+}
+
+// from the step before to this one
+void FixDustDetach::turn(int i)
+{
+  Dust::Quaternion q = orientation_of(i);
+  q.turn_by(atom->omega[i], update->dt);
+  std::copy_n(q.q, 4, orientation[i]);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixDustDetach::collide(int i)
 {
-  if (state[i] == FREE_FLIGHT) {
-    state[i] = start_collision();
-    collisions[state[i]].begin(atom->v[i]);
-  }
+  const Dust::Motion motion = motion_of(i);
+  if (state[i] == AT_REST && !functions->may_move(motion)) return;
+  if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
-  const double per_mass = 1.0 / atom->rmass[i];
-  const double *f = atom->f[i];
-  const double acceleration[3] = {f[0] * per_mass, f[1] * per_mass, f[2] * per_mass};
-  if (collision.step(*functions, acceleration, update->dt, attached[i], work)) record(i);
+  if (collision.step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
   if (collision.packed_size() > room) make_room(collision.packed_size());
+  if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixDustDetach::rebound(int i)
+void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
+{
+  state[i] = start_collision();
+  collisions[state[i]].begin(orientation_of(i), motion.spin);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::finish_collision(int i, int next)
 {
   Dust::Collision &collision = collisions[state[i]];
-  if (collision.end(*functions, atom->v[i], attached[i], work)) record(i);
+  const Dust::Motion motion = motion_of(i);
+  if (collision.end(*functions, motion.spin, attached[i], work)) record(i);
   array_atom[i][CONTACT_TIME] = collision.duration();
   array_atom[i][PEAK_ACCELERATION] = collision.peak_acceleration();
   mine.collisions += 1.0;
-  mine.north += collision.lost_north(*functions, atom->v[i], attached[i]);
-  mine.sliding += collision.sliding_grains(*functions, attached[i]);
-  mine.rolling += collision.rolling_grains(*functions, attached[i]);
+  mine.north += collision.lost_north(*functions, attached[i]);
+  mine.sliding += collision.grains_that(Dust::SLIDING, *functions, attached[i]);
+  mine.rolling += collision.grains_that(Dust::ROLLING, *functions, attached[i]);
+  idle.push_back(state[i]);
+  state[i] = next;
+
+  const double peak = collision.peak_acceleration();
+  if (!warned && peak <= functions->least_hold() && peak * too_soft > functions->least_hold()) {
+    warned = true;
+    error->warning(FLERR, "Fix dust/detach {}: grains of carrier {} stay only because its contacts are softer than the carrier "
+                   "material: see keyword stiffen", id, atom->tag[i]);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   a carrier that nothing touches, but that was given too fast a spin
+------------------------------------------------------------------------- */
+
+void FixDustDetach::spin_off(int i)
+{
+  const Dust::Motion motion = motion_of(i);
+  if (!functions->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
+  begin_collision(i, motion);
+  if (collisions[state[i]].step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
   idle.push_back(state[i]);
   state[i] = FREE_FLIGHT;
 }
@@ -349,13 +471,21 @@ void FixDustDetach::record(int i)
   for (const Dust::Detachment &d : work.detached) {
     mine.modes[d.mode] += 1.0;
     lost += functions->weight(d.bit);
-    if (!keep_rows) continue;
+    if (!keep_rows && !lose_mass) continue;
     const int number = functions->grain(d.bit);
     const Dust::Grain &grain = texture.grains[number];
-    const double distance = carrier_radius + grain.radius;
-    events.push_back({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
-                      x[0] + distance * grain.n[0], x[1] + distance * grain.n[1], x[2] + distance * grain.n[2],
-                      velocity[0] + d.velocity[0], velocity[1] + d.velocity[1], velocity[2] + d.velocity[2]});
+    const double distance = carrier_radius + grain.radius, *n = d.direction, *w = d.velocity;
+    const double place[3] = {x[0] + distance * n[0], x[1] + distance * n[1], x[2] + distance * n[2]};
+    const double speed[3] = {velocity[0] + w[0], velocity[1] + w[1], velocity[2] + w[2]};
+    if (keep_rows)
+      events.push_back({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius, place[0],
+                        place[1], place[2], speed[0], speed[1], speed[2]});
+    if (lose_mass) {
+      const double *spin = atom->omega[i];
+      losses.push_back({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(), grain.radius,
+                        double(update->ntimestep), place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1],
+                        spin[2]});
+    }
   }
   mine.weight += lost;
   array_atom[i][ATTACHED] -= double(work.detached.size());
@@ -436,15 +566,16 @@ double FixDustDetach::compute_vector(int n)
     case 3: return t.modes[Dust::TANGENTIAL];
     case 4: return std::accumulate(t.modes, t.modes + Dust::NMODES, 0.0) - compute_vector(5);
     case 5: return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
-               return c.lost_north(*functions, atom->v[i], attached[i]);    // with the velocity so far
+               return c.lost_north(*functions, attached[i]);    // with the velocity so far
              });
     case 6: return t.weight * grain_mass;
     case 7: return t.initial * grain_mass;
     case 8: return t.collisions;
-    case 9: return t.sliding + sum_under_way([&](const Dust::Collision &c, int i) { return c.sliding_grains(*functions, attached[i]); });
-    case 10: return t.rolling + sum_under_way([&](const Dust::Collision &c, int i) { return c.rolling_grains(*functions, attached[i]); });
+    case 9: return t.sliding + sum_under_way([&](const Dust::Collision &c, int i) { return c.grains_that(Dust::SLIDING, *functions, attached[i]); });
+    case 10: return t.rolling + sum_under_way([&](const Dust::Collision &c, int i) { return c.grains_that(Dust::ROLLING, *functions, attached[i]); });
     case 11: return t.modes[Dust::SLIDING];
-    default: return t.modes[Dust::ROLLING];
+    case 12: return t.modes[Dust::ROLLING];
+    default: return t.no_room;
   }
 }
 
@@ -453,9 +584,172 @@ double FixDustDetach::compute_vector(int n)
 double FixDustDetach::memory_usage()
 {
   const double words = functions ? functions->words() : 0;
-  double bytes = double(atom->nmax) * (sizeof(int) + words * sizeof(uint64_t) + (NCOLUMNS + 1) * sizeof(double));
+  double bytes = double(atom->nmax) * (sizeof(int) + words * sizeof(uint64_t) + (NCOLUMNS + 1 + orientation_size()) * sizeof(double));
   for (const Dust::Collision &collision : collisions) bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
   return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]);
+}
+
+/* ----------------------------------------------------------------------
+   what has been lost since the last window leaves the carriers' mass, as atoms if asked for
+------------------------------------------------------------------------- */
+
+void FixDustDetach::setup_pre_exchange()
+{
+  if (lose_mass) shed();
+}
+
+void FixDustDetach::pre_exchange()
+{
+  if (update->ntimestep == next_reneighbor) shed();
+}
+
+void FixDustDetach::shed()
+{
+  const std::vector<Loss> all = all_losses();
+  losses.clear();
+  if (all.empty()) return;
+
+  // on which atom of this rank each was
+  std::vector<int> carrier(all.size(), -1);
+  const auto by_carrier = [](const Loss &a, const Loss &b) { return a[CARRIER] < b[CARRIER]; };
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
+    Loss key = {};
+    key[CARRIER] = double(atom->tag[i]);
+    const auto range = std::equal_range(all.begin(), all.end(), key, by_carrier);
+    for (auto loss = range.first; loss != range.second; ++loss) carrier[loss - all.begin()] = i;
+  }
+  std::vector<char> leaves(all.size(), 0);
+  if (emit) find_room(all, carrier, leaves);
+
+  for (size_t k = 0; k < all.size(); k++) {
+    const int i = carrier[k];
+    if (i < 0) continue;
+    if (emit && !leaves[k]) {
+      mine.no_room += 1.0;
+      continue;
+    }
+    const double mass = atom->rmass[i], rest = mass - all[k][LOSS_MASS];
+    for (int d = 0; d < 3; d++) atom->v[i][d] = (mass * atom->v[i][d] - all[k][LOSS_MASS] * all[k][LOSS_V + d]) / rest;
+    atom->rmass[i] = rest;
+  }
+  if (!emit) return;
+  MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_CHAR, MPI_MAX, world);
+  tagint tag = DustAtoms::highest_tag(lmp);
+  DustAtoms atoms(lmp);
+  for (size_t k = 0; k < all.size(); k++) {
+    if (!leaves[k]) continue;
+    double x[3];
+    place_of(all[k], x);
+    atoms.create(emit, ++tag, x, all[k][LOSS_RADIUS], all[k][LOSS_MASS], &all[k][LOSS_V], &all[k][LOSS_SPIN]);
+  }
+  atoms.finish();
+}
+
+// in free flight since it left, as it leaves its carrier's mass now
+void FixDustDetach::place_of(const Loss &loss, double *x) const
+{
+  const double flight = (double(update->ntimestep) - loss[LOSS_TIME]) * update->dt;
+  for (int d = 0; d < 3; d++) x[d] = loss[LOSS_X + d] + flight * loss[LOSS_V + d];
+}
+
+// of all ranks and on all, in an order that does not depend on their number
+std::vector<FixDustDetach::Loss> FixDustDetach::all_losses() const
+{
+  const int count = static_cast<int>(losses.size()) * NLOSS;
+  std::vector<int> counts(comm->nprocs), offsets(comm->nprocs);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
+  std::vector<Loss> all((offsets.back() + counts.back()) / NLOSS);
+  MPI_Allgatherv(losses.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, world);
+  std::sort(all.begin(), all.end());    // by carrier, then by grain
+  return all;
+}
+
+/* ----------------------------------------------------------------------
+   grains of this rank's carriers that would overlap no other atom and lie in the box; walls are not known here
+------------------------------------------------------------------------- */
+
+void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<int> &carrier, std::vector<char> &leaves) const
+{
+  struct Sphere {
+    double x[3], radius;
+    bool touches(const double *y, double r) const
+    {
+      const double e[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      return Dust::dot(e, e) < (radius + r) * (radius + r);
+    }
+  };
+  std::vector<Sphere> near, placed;
+  for (size_t first = 0, last; first < all.size(); first = last) {
+    for (last = first + 1; last < all.size() && carrier[last] == carrier[first]; last++) {}
+    const int i = carrier[first];
+    if (i < 0) continue;
+
+    // places next to the carrier, whose image may have changed
+    const double *centre = atom->x[i];
+    std::vector<Sphere> grains(last - first);
+    double reach = 0.0;
+    for (size_t k = first; k < last; k++) {
+      Sphere &grain = grains[k - first];
+      double x[3];
+      place_of(all[k], x);
+      domain->closest_image(centre, x, grain.x);
+      grain.radius = all[k][LOSS_RADIUS];
+      const double e[3] = {grain.x[0] - centre[0], grain.x[1] - centre[1], grain.x[2] - centre[2]};
+      reach = std::max(reach, std::sqrt(Dust::dot(e, e)) + grain.radius);
+    }
+    near.clear();
+    for (int j = 0; j < atom->nlocal + atom->nghost; j++) {
+      const double *x = atom->x[j];
+      if (atom->tag[j] != atom->tag[i] && Sphere{{x[0], x[1], x[2]}, atom->radius[j]}.touches(centre, reach))
+        near.push_back({{x[0], x[1], x[2]}, atom->radius[j]});
+    }
+    for (const Sphere &sphere : placed)
+      if (sphere.touches(centre, reach)) near.push_back(sphere);
+
+    for (size_t k = first; k < last; k++) {
+      const Sphere &grain = grains[k - first];
+      bool room = true;
+      for (int d = 0; d < 3; d++) {
+        const bool fixed_low = domain->boundary[d][0] == FIXED, fixed_high = domain->boundary[d][1] == FIXED;
+        room = room && !(fixed_low && grain.x[d] < domain->boxlo[d]) && !(fixed_high && grain.x[d] > domain->boxhi[d]);
+      }
+      for (const Sphere &sphere : near) room = room && !sphere.touches(grain.x, grain.radius);
+      if (!room) continue;
+      leaves[k] = 1;
+      near.push_back(grain);
+      placed.push_back(grain);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   what stiff contacts of the carriers' material would do, by which factor more than those of the deck as they are taken
+------------------------------------------------------------------------- */
+
+void FixDustDetach::look_for_soft_contacts()
+{
+  too_soft = 1.0;
+  warned = false;
+  const double modulus = Dust::combined_modulus(options.elastic[2], options.elastic[3], options.elastic[2], options.elastic[3]);
+  const auto look = [&](const Granular_NS::GranularModel *model) {
+    const Granular_NS::GranSubModNormal *normal = model->normal_model;
+    if (!normal->get_material_properties()) return;
+    const double E = normal->get_emod(), nu = normal->get_poiss();
+    too_soft = std::max(too_soft, std::pow(modulus / Dust::combined_modulus(E, nu, E, nu), 0.4) / stiffen_acceleration);
+  };
+
+  std::vector<int> carriers(atom->ntypes + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) carriers[atom->type[i]] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, carriers.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  const auto *pair = dynamic_cast<PairGranular *>(force->pair);
+  for (int t = 1; pair && pair->types_indices && t <= atom->ntypes; t++)
+    if (carriers[t]) look(pair->models_list[pair->types_indices[t][t]]);
+  for (Fix *other : modify->get_fix_list())
+    if (const auto *wall = dynamic_cast<FixWallGran *>(other))
+      if (wall->model) look(wall->model);
 }
 
 /* ----------------------------------------------------------------------
@@ -467,6 +761,7 @@ void FixDustDetach::grow_arrays(int nmax)
   memory->grow(state, nmax, "dust/detach:state");
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
   memory->grow(array_atom, nmax, NCOLUMNS, "dust/detach:array_atom");
+  if (orientation_size()) memory->grow(orientation, nmax, orientation_size(), "dust/detach:orientation");
   if (functions) memory->grow(attached, nmax, functions->words(), "dust/detach:attached");
 }
 
@@ -477,6 +772,7 @@ void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
   state[j] = state[i];
   window_mass[j] = window_mass[i];
   std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), array_atom[j]);
+  std::copy_n(orientation ? orientation[i] : nullptr, orientation_size(), orientation ? orientation[j] : nullptr);
   if (functions) std::copy_n(attached[i], functions->words(), attached[j]);
 }
 
@@ -491,12 +787,18 @@ void FixDustDetach::set_arrays(int i)
 }
 
 /* ----------------------------------------------------------------------
-   layout: words of a texture or 0, collision or not, columns, mass of the window, bits, collision
+   layout: words of a texture or 0, state, columns, mass of the window, orientation, bits, collision
 ------------------------------------------------------------------------- */
 
 int FixDustDetach::fixed_size() const
 {
-  return 2 + NCOLUMNS + 1 + (functions ? functions->words() : 0);
+  return 2 + NCOLUMNS + 1 + orientation_size() + (functions ? functions->words() : 0);
+}
+
+// numbers of a quaternion, if there is one
+int FixDustDetach::orientation_size() const
+{
+  return rotation || !options.same_orientation() ? 4 : 0;
 }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
@@ -521,9 +823,10 @@ int FixDustDetach::pack(int i, double *buf) const
   const int words = functions->words();
   double *p = buf;
   *p++ = words;
-  *p++ = state[i] >= 0;
+  *p++ = state[i] >= 0 ? 0 : state[i];
   p = std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), p);
   *p++ = window_mass[i];
+  if (orientation) p = std::copy_n(orientation[i], 4, p);
   std::memcpy(p, attached[i], words * sizeof(uint64_t));
   p += words;
   if (state[i] >= 0) {
@@ -541,15 +844,16 @@ void FixDustDetach::unpack(int i, const double *buf)
   if (words == 0) return;
   if (!functions || words != functions->words())
     error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
-  const bool colliding = *p++ > 0.0;
+  state[i] = static_cast<int>(*p++);
   std::copy_n(p, static_cast<int>(NCOLUMNS), array_atom[i]);
   p += NCOLUMNS;
   window_mass[i] = *p++;
   open_windows = 2;
+  if (orientation) std::copy_n(p, 4, orientation[i]);
+  p += orientation_size();
   std::memcpy(attached[i], p, words * sizeof(uint64_t));
   p += words;
-  state[i] = FREE_FLIGHT;
-  if (colliding) {
+  if (state[i] == 0) {
     state[i] = start_collision();
     collisions[state[i]].unpack(p);
     if (collisions[state[i]].packed_size() > room) make_room(collisions[state[i]].packed_size());
@@ -571,12 +875,12 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   restart: totals and the rows of two windows; per carrier what a migrating carrier takes along
+   restart: totals, the rows of two windows and losses; per carrier what a migrating carrier takes along
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  std::vector<double> list = {texture_checksum};
+  std::vector<double> list = {texture_checksum, double(orientation_size())};
   Totals total;
   MPI_Reduce(&mine, &total, sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
   const auto *p = reinterpret_cast<const double *>(&total);
@@ -592,6 +896,9 @@ void FixDustDetach::write_restart(FILE *fp)
     list.push_back(double(all.size()));
     list.insert(list.end(), all.begin(), all.end());
   }
+  const std::vector<Loss> under_way = all_losses();
+  list.push_back(double(under_way.size()));
+  for (const Loss &loss : under_way) list.insert(list.end(), loss.begin(), loss.end());
   if (comm->me == 0) {
     const int size = static_cast<int>(list.size() * sizeof(double));
     fwrite(&size, sizeof(int), 1, fp);
@@ -617,9 +924,13 @@ void FixDustDetach::restart(char *buf)
   const double checksum = *p++;
   if (checksum != 0.0 && functions && std::fabs(checksum - texture_checksum) > 1.0e-9 * (1.0 + std::fabs(checksum)))
     error->all(FLERR, "Fix dust/detach texture is not the one of the restart file");
+  if (checksum != 0.0 && *p != orientation_size())
+    error->all(FLERR, "Fix dust/detach rotation or orientation is not that of the restart file");
+  p++;
   mine = Totals{};
   events.clear();
   rows.clear();
+  losses.clear();
   if (comm->me == 0) {
     std::memcpy(&mine, p, sizeof(Totals));
     p += sizeof(Totals) / sizeof(double);
@@ -628,6 +939,10 @@ void FixDustDetach::restart(char *buf)
       std::memcpy(window->data(), p, window->size() * sizeof(Row));
       p += window->size() * NROW;
     }
+  }
+  if (comm->me == 0) {
+    losses.resize(static_cast<size_t>(*p++));
+    std::memcpy(losses.data(), p, losses.size() * sizeof(Loss));
   }
   show_rows();
   newcomers = true;

@@ -28,6 +28,8 @@ class FixDustDetach : public Fix {
   ~FixDustDetach() override;
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override;
+  void pre_exchange() override;
   void setup(int) override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
@@ -56,7 +58,10 @@ class FixDustDetach : public Fix {
   Dust::Criteria criteria;
   double friction, rolling;
   int every;
-  bool keep_rows;
+  bool keep_rows, rotation;
+  double stiffen_acceleration, stiffen_time;    // what softened contacts give, times these, is what stiff ones would
+  bool lose_mass;
+  int emit;    // type of the atoms that detached grains become, or 0
   void parse(int, char **);
   void check_order() const;
 
@@ -68,9 +73,10 @@ class FixDustDetach : public Fix {
   void build();
 
   // per atom
-  enum { NO_CARRIER = -2, FREE_FLIGHT = -1 };    // other states: index of the collision
+  enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: index of the collision
   int *state;
   uint64_t **attached;
+  double **orientation;    // quaternion, if it is not the same for all carriers for ever
   double *window_mass;    // lost in the window that is not complete yet
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
   bool newcomers;         // atoms were added that may be carriers
@@ -81,14 +87,20 @@ class FixDustDetach : public Fix {
   std::vector<int> idle;
   int start_collision();
   void drop_lost_collisions();
+  Dust::Motion motion_of(int) const;
+  Dust::Quaternion orientation_of(int) const;
+  void turn(int);
   void collide(int);
-  void rebound(int);
+  void begin_collision(int, const Dust::Motion &);
+  void finish_collision(int, int);
+  void spin_off(int);
 
   // what this rank has counted since the start, or since it read a restart file; whole numbers but for weight, the
   // mass lost in mean grain masses, which is one for equal grains
   struct Totals {
     double initial, modes[Dust::NMODES], weight, collisions;
     double north, sliding, rolling;    // of the collisions that are over
+    double no_room;                    // grains that were not emitted
   } mine;
   struct Sums {    // over all ranks
     Totals totals;
@@ -109,9 +121,24 @@ class FixDustDetach : public Fix {
   void show_rows();
   std::vector<double> gather(const std::vector<Row> &) const;
 
+  // detached grains whose mass is still in their carrier's: they leave it at the end of the window
+  enum { CARRIER, GRAIN, LOSS_MASS, LOSS_RADIUS, LOSS_TIME, LOSS_X, LOSS_V = LOSS_X + 3, LOSS_SPIN = LOSS_V + 3, NLOSS = LOSS_SPIN + 3 };
+  using Loss = std::array<double, NLOSS>;
+  std::vector<Loss> losses;
+  void shed();
+  std::vector<Loss> all_losses() const;
+  void place_of(const Loss &, double *) const;
+  void find_room(const std::vector<Loss> &, const std::vector<int> &, std::vector<char> &) const;
+
+  // contacts of the deck that are softer than `stiffen` says
+  double too_soft;    // factor of the inertia, or 1
+  bool warned;
+  void look_for_soft_contacts();
+
   int room;    // for a collision in what a carrier takes along when it changes ranks
   void make_room(int);
   int fixed_size() const;
+  int orientation_size() const;
   int packed_size(int) const;
   int pack(int, double *) const;
   void unpack(int, const double *);

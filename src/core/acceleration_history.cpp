@@ -4,9 +4,8 @@
 
 #include "acceleration_history.h"
 
-#include "geometry.h"
-
 #include <algorithm>
+#include <cmath>
 
 using namespace Dust;
 
@@ -27,26 +26,32 @@ bool Dust::is_between(const Split &s, double q2)
 
 void AccelerationHistory::clear()
 {
-  points.clear();
+  motions.clear();
   levels.clear();
   largest = 0;
   size2_of_peak = 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   a motion matters to no grain if it lies between none and another one: g is linear in it, but for the spin
+------------------------------------------------------------------------- */
 
-void AccelerationHistory::add(const double *a, double size2)
+void AccelerationHistory::add(const Motion &motion, double size2)
 {
-  const auto covers = [](const double *q, double q2, const double *p) { return is_between(split(p, q, q2), q2); };
-  size_t n = points.size() / 3;
-  if (n && size2 <= size2_of_peak && covers(peak(), size2_of_peak, a)) return;
-  if (n > largest + 1) {
-    const double *last = &points[3 * (n - 1)];
-    if (covers(last, dot(last, last), a)) return;
+  const bool turns = motion.turns();
+  const auto covers = [](const Motion &q, double q2, const Motion &p) {
+    return is_between(split(p.acceleration, q.acceleration, q2), q2) && !p.turns() && !q.turns();
+  };
+  size_t n = motions.size();
+  if (n && !turns && size2 <= size2_of_peak && covers(peak(), size2_of_peak, motion)) return;
+  if (n > largest + 1 && !turns) {
+    const Motion &last = motions[n - 1];
+    if (covers(last, dot(last.acceleration, last.acceleration), motion)) return;
   }
-  while (n && covers(a, size2, &points[3 * (n - 1)])) n--;
-  points.resize(3 * (n + 1));
-  std::copy_n(a, 3, &points[3 * n]);
+  if (!turns)
+    while (n && covers(motion, size2, motions[n - 1])) n--;
+  motions.resize(n);
+  motions.push_back(motion);
   if (size2 > size2_of_peak || largest >= n) {
     largest = n;
     size2_of_peak = size2;
@@ -56,10 +61,18 @@ void AccelerationHistory::add(const double *a, double size2)
 
 /* ---------------------------------------------------------------------- */
 
+AccelerationHistory::Sphere AccelerationHistory::member(size_t level, size_t i) const
+{
+  if (level > 0) return levels[level - 1][i];
+  const Motion &m = motions[i];
+  const double *a = m.acceleration;
+  return {{a[0], a[1], a[2]}, 0.0, m.turning()};
+}
+
 void AccelerationHistory::update_tree()
 {
-  // the last point may be replaced by the next one and is in no sphere; others never change but by being dropped
-  size_t whole = points.size() / 3 - 1;
+  // the last motion may be replaced by the next one and is in no sphere; others never change but by being dropped
+  size_t whole = motions.size() - 1;
   for (size_t level = 0; whole >= BRANCH || level < levels.size(); level++) {
     whole /= BRANCH;
     if (level == levels.size()) levels.emplace_back();
@@ -67,18 +80,15 @@ void AccelerationHistory::update_tree()
     if (spheres.size() > whole) spheres.resize(whole);
     while (spheres.size() < whole) {
       const size_t first = spheres.size() * BRANCH;
-      const auto member = [&](size_t i) {
-        if (level > 0) return levels[level - 1][first + i];
-        const double *p = &points[3 * (first + i)];
-        return Sphere{{p[0], p[1], p[2]}, 0.0};
-      };
-      Sphere s = {{0.0, 0.0, 0.0}, 0.0};
+      Sphere s = {};
       for (size_t i = 0; i < BRANCH; i++)
-        for (int d = 0; d < 3; d++) s.centre[d] += member(i).centre[d] / BRANCH;
+        for (int d = 0; d < 3; d++) s.centre[d] += member(level, first + i).centre[d] / BRANCH;
       for (size_t i = 0; i < BRANCH; i++) {
-        const Sphere m = member(i);
+        const Sphere m = member(level, first + i);
         const double r[3] = {m.centre[0] - s.centre[0], m.centre[1] - s.centre[1], m.centre[2] - s.centre[2]};
-        s.radius = std::max(s.radius, (std::sqrt(dot(r, r)) + m.radius) * (1.0 + 1.0e-12));    // round-off
+        constexpr double ROUND_OFF = 1.0 + 1.0e-12;
+        s.radius = std::max(s.radius, (std::sqrt(dot(r, r)) + m.radius) * ROUND_OFF);
+        s.turning = std::max(s.turning, m.turning * ROUND_OFF);
       }
       spheres.push_back(s);
     }
@@ -87,16 +97,16 @@ void AccelerationHistory::update_tree()
 
 /* ---------------------------------------------------------------------- */
 
-double AccelerationHistory::largest_along(const double *n, size_t &hint) const
+double AccelerationHistory::largest_push(const double *n, double shell, size_t &hint) const
 {
-  const auto along = [&](size_t i) { return dot(&points[3 * i], n); };
-  if (along(largest) > along(hint)) hint = largest;
-  double most = along(hint);
+  const auto push = [&](size_t i) { return -motions[i].lift(n, shell); };
+  if (push(largest) > push(hint)) hint = largest;
+  double most = push(hint);
   search([&](const Sphere &s) { return dot(s.centre, n) + s.radius > most; },
          [&](size_t i) {
-           if (along(i) > most) {
+           if (push(i) > most) {
              hint = i;
-             most = along(i);
+             most = push(i);
            }
            return false;
          });
@@ -105,16 +115,16 @@ double AccelerationHistory::largest_along(const double *n, size_t &hint) const
 
 /* ---------------------------------------------------------------------- */
 
-void AccelerationHistory::assign(const double *first, const double *last)
+void AccelerationHistory::assign(const Motion *first, size_t count)
 {
   clear();
-  points.assign(first, last);
-  for (size_t i = 0; i < points.size() / 3; i++) {
-    const double size2 = dot(&points[3 * i], &points[3 * i]);
+  motions.assign(first, first + count);
+  for (size_t i = 0; i < count; i++) {
+    const double size2 = dot(motions[i].acceleration, motions[i].acceleration);
     if (size2 > size2_of_peak) {
       largest = i;
       size2_of_peak = size2;
     }
   }
-  if (!points.empty()) update_tree();
+  if (count) update_tree();
 }

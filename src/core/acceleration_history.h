@@ -5,63 +5,72 @@
 #ifndef DUST_CORE_ACCELERATION_HISTORY_H
 #define DUST_CORE_ACCELERATION_HISTORY_H
 
-#include <cmath>
+#include "motion.h"
+
+#include <cstddef>
 #include <vector>
 
 namespace Dust {
 
-/*! The accelerations of a collision, as far as any of them can be largest in some direction
+/*! The motions of a collision, along the carrier's own axes, as far as any of them can matter most to some grain
  *
- * Straight impacts and steady sliding leave one. Where the acceleration turns, all of them stay, in a tree of bounding
- * spheres, so that a question about them looks at few. */
+ * Straight impacts and steady sliding leave one. Where the acceleration turns or the carrier does, all of them stay, in a
+ * tree of bounding spheres of the accelerations, so that a question about them looks at few. */
 class AccelerationHistory {
  public:
   void clear();
 
-  /*! Adds an acceleration; size2 = its square */
-  void add(const double *a, double size2);
+  /*! Adds a motion; size2 = square of its acceleration */
+  void add(const Motion &motion, double size2);
 
-  bool empty() const { return points.empty(); }
-  /*! The largest; there must be one */
-  const double *peak() const { return &points[3 * largest]; }
+  bool empty() const { return motions.empty(); }
+  /*! The motion of the largest acceleration; there must be one */
+  const Motion &peak() const { return motions[largest]; }
   double peak2() const { return size2_of_peak; }
 
-  /*! Largest a.n of all accelerations, for a direction in which some have a positive one
+  /*! Largest push on a grain, a.n less the centrifugal acceleration, if it is positive for some motion, else 0
    *  \param hint  0 at first; keeps the answer's place, which is near that for a similar direction */
-  double largest_along(const double *n, size_t &hint) const;
+  double largest_push(const double *n, double shell, size_t &hint) const;
 
-  /*! Whether excess(a) > 0 for any acceleration a
-   *  \param slope  by how much excess changes at most per change of its argument */
-  template <typename Excess> bool any(Excess excess, double slope) const
+  /*! Whether excess(motion) > 0 for any motion
+   *  \param slope  by how much excess changes at most per change of the acceleration, or of what alpha and omega add to
+   *                it at the distance `shell` */
+  template <typename Excess> bool any(Excess excess, double slope, double shell) const
   {
-    if (points.empty()) return false;
+    if (motions.empty()) return false;
     if (excess(peak()) > 0.0) return true;
-    return search([&](const Sphere &s) { return excess(s.centre) + slope * s.radius > 0.0; },
-                  [&](size_t i) { return excess(&points[3 * i]) > 0.0; });
+    const auto may = [&](const Sphere &s) {
+      Motion centre = {};
+      for (int d = 0; d < 3; d++) centre.acceleration[d] = s.centre[d];
+      return excess(centre) + slope * (s.radius + shell * s.turning) > 0.0;
+    };
+    return search(may, [&](size_t i) { return excess(motions[i]) > 0.0; });
   }
 
-  /*! Its points, for transfer to another rank and restart */
-  const std::vector<double> &numbers() const { return points; }
-  void assign(const double *first, const double *last);
+  /*! Its motions, for transfer to another rank and restart */
+  const std::vector<Motion> &kept() const { return motions; }
+  void assign(const Motion *first, size_t count);
 
  private:
   static constexpr size_t BRANCH = 16;
   struct Sphere {
     double centre[3], radius;
+    double turning;    // largest |alpha| + omega^2
   };
-  std::vector<double> points;                  // x y z of each
-  std::vector<std::vector<Sphere>> levels;     // each of BRANCH of the level below, the first of BRANCH points
+  std::vector<Motion> motions;
+  std::vector<std::vector<Sphere>> levels;     // each of BRANCH of the level below, the first of BRANCH motions
   size_t largest = 0;
   double size2_of_peak = 0.0;
 
+  Sphere member(size_t level, size_t i) const;
   void update_tree();
   size_t count(size_t level) const { return level < levels.size() ? levels[level].size() : 0; }
 
-  // calls visit(point) for all points of spheres that may hold what is sought, until it returns true
+  // calls visit(motion) for all motions of spheres that may hold what is sought, until it returns true
   template <typename May, typename Visit> bool search(May may, Visit visit) const
   {
     // what is in no sphere of the next level yet
-    for (size_t i = count(0) * BRANCH; i < points.size() / 3; i++)
+    for (size_t i = count(0) * BRANCH; i < motions.size(); i++)
       if (visit(i)) return true;
     for (size_t level = 0; level < levels.size(); level++)
       for (size_t k = count(level + 1) * BRANCH; k < levels[level].size(); k++)

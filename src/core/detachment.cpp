@@ -14,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 using namespace Dust;
 
@@ -76,7 +77,7 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
   if (finest->radius == coarsest->radius) mass = mass_of(*finest);
 
   least = slow2 = INF;
-  largest = 0.0;
+  largest = reach = 0.0;
   for (int bit = 0; bit < n; bit++) {
     const Grain &g = texture.grains[order[bit]];
     const double r12 = effective_radius(texture.carrier_radius, g.radius);
@@ -89,46 +90,79 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
     site.grain = order[bit];
     least = std::min(least, site.hold);
     largest = std::max(largest, site.hold);
+    reach = std::max(reach, site.shell);
     slow2 = std::min(slow2, site.hold * site.shell);
   }
+  // largest g_t + mu_f g_n of a given |g| against 2 mu_f c. Without friction grains roll at some force, too; and all
+  // leave that feel c.
+  moving = least * std::clamp(2.0 * friction / std::sqrt(1.0 + friction * friction), 0.1, 1.0);
 
   patches.resize(words());
   for (int p = 0; p < words(); p++) {
     Patch &patch = patches[p];
-    patch = {{0.0, 0.0, 0.0}, 0.0, INF};
-    const auto grain_at = [&](int k) { return sites[p * PATCH + k].n; };
+    patch = {{0.0, 0.0, 0.0}, 0.0, INF, 0.0, 0.0};
+    const auto site_at = [&](int k) -> const Site & { return sites[p * PATCH + k]; };
     each_bit(all[p], [&](int k) {
-      for (int d = 0; d < 3; d++) patch.centre[d] += grain_at(k)[d] / __builtin_popcountll(all[p]);
-      patch.hold = std::min(patch.hold, sites[p * PATCH + k].hold);
+      const Site &site = site_at(k);
+      for (int d = 0; d < 3; d++) patch.centre[d] += site.n[d];
+      patch.least_hold = std::min(patch.least_hold, site.hold);
+      patch.largest_hold = std::max(patch.largest_hold, site.hold);
+      patch.largest_lever = std::max(patch.largest_lever, site.lever);
     });
+    const double size = std::sqrt(dot(patch.centre, patch.centre));
+    for (double &x : patch.centre) x /= size;
     each_bit(all[p], [&](int k) {
-      const double *n = grain_at(k);
+      const double *n = site_at(k).n;
       const double r[3] = {n[0] - patch.centre[0], n[1] - patch.centre[1], n[2] - patch.centre[2]};
       patch.radius = std::max(patch.radius, std::sqrt(dot(r, r)));
     });
   }
 }
 
+/* ---------------------------------------------------------------------- */
+
+bool DetachmentFunctions::may_move(const Motion &m) const
+{
+  const double a2 = dot(m.acceleration, m.acceleration);
+  if (!m.turns()) return a2 > moving * moving;
+  return std::sqrt(a2) + reach * m.turning() > moving;
+}
+
 /* ----------------------------------------------------------------------
    sliding and rolling of Eq. 2
 ------------------------------------------------------------------------- */
 
-DetachmentFunctions::Excess DetachmentFunctions::excess(int bit, const double *g) const
+double DetachmentFunctions::excess(Mode mode, int bit, const Motion &motion) const
 {
   const Site &site = sites[bit];
-  const double gn = dot(g, site.n), c = site.hold;
+  double g[3];
+  motion.inertia(site.n, site.shell, g);
+  const double gn = dot(g, site.n);
   const double t[3] = {g[0] - gn * site.n[0], g[1] - gn * site.n[1], g[2] - gn * site.n[2]};
-  const double gt = std::sqrt(dot(t, t));
-  return {gt - friction * std::fabs(2.0 * c - gn), gt - site.lever * std::fabs(c - gn)};
+  const auto [factor, slope] = limit(mode, site.lever);
+  return std::sqrt(dot(t, t)) - slope * std::fabs(factor * site.hold - gn);
+}
+
+// from the value at the centre: a chord r changes g_n and g_t by at most |g| r, turning by at most what it adds to g
+bool DetachmentFunctions::all_exceed(Mode mode, int p, const Motion &motion) const
+{
+  const Patch &patch = patches[p];
+  const double *a = motion.acceleration, *n = patch.centre;
+  const double gn = -dot(a, n), size2 = dot(a, a), gt = std::sqrt(std::max(0.0, size2 - gn * gn));
+  const auto [factor, slope] = limit(mode, patch.largest_lever);
+  const double off = std::max(std::fabs(factor * patch.least_hold - gn), std::fabs(factor * patch.largest_hold - gn));
+  const double change = std::sqrt(size2) * patch.radius + reach * motion.turning();
+  constexpr double ROUND_OFF = 1.0e-9;
+  return gt - slope * off > (1.0 + slope) * change + ROUND_OFF * (gt + slope * off);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void Collision::begin(const double *velocity)
+void Collision::begin(const Quaternion &orientation, const double *spin)
 {
-  std::copy_n(velocity, 3, v0);
-  time = 0.0;
-  nslid = nrolled = 0;
+  course = Course{};
+  course.frame = orientation;
+  orientation.to_body(spin, course.spin0);
   start.clear();
   history.clear();
   record.clear();
@@ -138,26 +172,53 @@ void Collision::begin(const double *velocity)
 
 /* ---------------------------------------------------------------------- */
 
-bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, uint64_t *attached,
-                     Workspace &work)
+bool Collision::step(const DetachmentFunctions &df, const Motion &in_space, double dt, uint64_t *attached, Workspace &work)
 {
-  time += dt;
-  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(a, dt);
-  const double size2 = dot(a, a);
+  Course &c = course;
+  Motion m = {};
+  c.frame.to_body(in_space.acceleration, m.acceleration);
+  for (int d = 0; d < 3; d++) c.impulse[d] += m.acceleration[d] * dt;
+  const bool turns = in_space.turns();
+  if (turns) {
+    c.frame.to_body(in_space.angular_acceleration, m.angular_acceleration);
+    c.frame.to_body(in_space.spin, m.spin);
+    if (c.steps > 0.0) c.turn.turn_by(m.spin, dt);
+    for (int d = 0; d < 3; d++) m.spin[d] += 0.5 * dt * m.angular_acceleration[d];
+  }
+  c.time += dt;
+  c.steps += 1.0;
+  std::copy_n(m.spin, 3, c.spin);
+  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(m.acceleration, dt);
+  if (!c.turn.is_none()) {    // along the carrier's axes
+    c.turn.to_body(m.acceleration, m.acceleration);
+    c.turn.to_body(m.angular_acceleration, m.angular_acceleration);
+    c.turn.to_body(m.spin, m.spin);
+  }
+
+  const double size2 = dot(m.acceleration, m.acceleration), turning = turns ? m.turning() : 0.0;
+  const double most = std::sqrt(size2) + df.reach * turning;    // |g| on any grain
+  c.most = std::max(c.most, most);
+  if (most > df.moving || history.empty() || size2 > history.peak2()) {
+    // after a pause longer than the burst before it, another one begins
+    if (c.steps - 1.0 - c.lively_end > c.lively_end - c.burst) c.burst = c.steps - 1.0;
+    c.lively_end = c.steps;
+    c.lively = c;
+  }
+
   Split s = {INF, INF};
   if (!history.empty() && size2 <= history.peak2()) {
-    s = split(a, history.peak(), history.peak2());
-    if (is_between(s, history.peak2())) return false;
+    const Motion &peak = history.peak();
+    s = split(m.acceleration, peak.acceleration, history.peak2());
+    if (!turns && !peak.turns() && is_between(s, history.peak2())) return false;
   }
-  const double g[3] = {-a[0], -a[1], -a[2]};
   const size_t before = work.detached.size();
   if (df.criteria.ibrahim)
-    check_all(df, g, attached, work);
-  else if (size2 > df.least * df.least) {
-    const double spare = (1.0 - s.lambda) * df.least;
-    if (!(s.lambda >= 0.0 && spare >= 0.0 && s.aside2 <= spare * spare)) lift_off(df, g, attached, work);
+    check_all(df, m, attached, work);
+  else if (most > df.least) {
+    const double spare = (1.0 - s.lambda) * df.least - df.reach * turning;
+    if (!(s.lambda >= 0.0 && spare >= 0.0 && s.aside2 <= spare * spare)) lift_off(df, m, attached, work);
   }
-  history.add(a, size2);
+  history.add(m, size2);
   return work.detached.size() > before;
 }
 
@@ -165,24 +226,24 @@ bool Collision::step(const DetachmentFunctions &df, const double *a, double dt, 
    lift-off normal
 ------------------------------------------------------------------------- */
 
-void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_t *attached,
-                         Workspace &work)
+void Collision::lift_off(const DetachmentFunctions &df, const Motion &motion, uint64_t *attached, Workspace &work)
 {
   if (start.empty()) start.assign(attached, attached + df.words());
 
   work.leaving.clear();
-  double along = dot(g, window.axis);
-  const double e[3] = {g[0] - along * window.axis[0], g[1] - along * window.axis[1], g[2] - along * window.axis[2]};
-  const double aside2 = dot(e, e);
-  if (along >= 0.0 && along <= window.along && aside2 <= window.aside * window.aside) {
-    window.strayed2 = std::max(window.strayed2, aside2);
+  const double *a = motion.acceleration;
+  double along = -dot(a, window.axis);
+  const double e[3] = {a[0] + along * window.axis[0], a[1] + along * window.axis[1], a[2] + along * window.axis[2]};
+  const double strayed = std::sqrt(dot(e, e)) + df.reach * dot(motion.spin, motion.spin);
+  if (along >= 0.0 && along <= window.along && strayed <= window.aside) {
+    window.strayed = std::max(window.strayed, strayed);
   } else {
     // twice as wide as needed so far
     if (window.along >= 0.0 && along <= window.along) window.width *= 2.0;
-    else if (window.along >= 0.0) window.width = 2.0 * std::sqrt(window.strayed2) / window.from;
+    else if (window.along >= 0.0) window.width = 2.0 * window.strayed / window.from;
     window.width = std::clamp(window.width, 1.0e-4, 0.1);
-    open_window(df, g, attached, work);
-    along = dot(g, window.axis);
+    open_window(df, motion, attached, work);
+    along = -dot(a, window.axis);
   }
 
   const int reached = window.step_of(along);
@@ -190,7 +251,7 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
     window.close.push_back(window.candidates[window.next].bit);
   for (size_t k = 0; k < window.close.size();) {
     const int bit = window.close[k];
-    if (df.normal(bit, g) > df.sites[bit].hold) {
+    if (df.lift(bit, motion) > df.sites[bit].hold) {
       work.leaving.push_back(bit);
       window.close[k] = window.close.back();
       window.close.pop_back();
@@ -199,7 +260,7 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
   }
   // the order of windows must not show, as a restart opens another one
   if (!std::is_sorted(work.leaving.begin(), work.leaving.end())) std::sort(work.leaving.begin(), work.leaving.end());
-  for (int bit : work.leaving) leave(df, {bit, NORMAL, {}}, g, attached, work);
+  for (int bit : work.leaving) leave_place(df, bit, NORMAL, motion, attached, work);
 }
 
 /* ----------------------------------------------------------------------
@@ -207,16 +268,16 @@ void Collision::lift_off(const DetachmentFunctions &df, const double *g, uint64_
    lift off at g itself are leaving
 ------------------------------------------------------------------------- */
 
-void Collision::open_window(const DetachmentFunctions &df, const double *g, const uint64_t *attached, Workspace &work)
+void Collision::open_window(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached, Workspace &work)
 {
   constexpr double ROUND_OFF = 1.0e-9;
-  const double size = std::sqrt(dot(g, g));
-  for (int d = 0; d < 3; d++) window.axis[d] = g[d] / size;
+  const double *a = motion.acceleration, size = std::sqrt(dot(a, a)), spun = df.reach * dot(motion.spin, motion.spin);
+  for (int d = 0; d < 3; d++) window.axis[d] = size > 0.0 ? -a[d] / size : d == 2;
   window.from = size;
-  window.along = size * (1.0 + 0.3 * size / df.least);
+  window.along = size * (1.0 + 0.3 * size / df.least) + 1.0e-3 * df.least;
   // well below what holds a grain, or grains that feel no lift at all would be candidates
-  window.aside = std::min(size * window.width, 0.3 * df.least);
-  window.strayed2 = 0.0;
+  window.aside = std::min(size * window.width, 0.3 * df.least) + 1.5 * spun;
+  window.strayed = spun;
   window.steps_per_force = Window::STEPS / (window.along - window.from);
   window.close.clear();
   window.next = 0;
@@ -226,17 +287,17 @@ void Collision::open_window(const DetachmentFunctions &df, const double *g, cons
   int count[Window::STEPS + 1] = {};
   for (int p = 0; p < df.words(); p++) {
     const auto &patch = df.patches[p];
-    if (!attached[p] || most * (dot(window.axis, patch.centre) + patch.radius) + aside <= patch.hold)
+    if (!attached[p] || most * std::max(0.0, dot(window.axis, patch.centre) + patch.radius) + aside <= patch.least_hold)
       continue;
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
-      const double u = df.normal(bit, window.axis), hold = df.sites[bit].hold;
-      if (most * u <= hold - aside) return;
-      if (df.normal(bit, g) > hold) {
+      const double u = dot(window.axis, df.sites[bit].n), hold = df.sites[bit].hold;
+      if (most * std::max(0.0, u) <= hold - aside) return;
+      if (df.lift(bit, motion) > hold) {
         work.leaving.push_back(bit);
         return;
       }
-      const int from = window.step_of((hold - aside) / u * (1.0 - ROUND_OFF));
+      const int from = hold > aside ? window.step_of((hold - aside) / u * (1.0 - ROUND_OFF)) : 0;
       work.found.push_back({from, bit});
       count[from + 1]++;
     });
@@ -258,72 +319,66 @@ int Collision::Window::step_of(double force) const
    all criteria on every grain: few are left to check soon after the first steps, as rolling needs least
 ------------------------------------------------------------------------- */
 
-void Collision::check_all(const DetachmentFunctions &df, const double *g, uint64_t *attached,
-                          Workspace &work)
+void Collision::check_all(const DetachmentFunctions &df, const Motion &motion, uint64_t *attached, Workspace &work)
 {
   if (start.empty()) start.assign(attached, attached + df.words());
   for (int p = 0; p < df.words(); p++)
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
-      if (df.normal(bit, g) > df.sites[bit].hold)
-        leave(df, {bit, NORMAL, {}}, g, attached, work);
-      else if (df.excess(bit, g).sliding > 0.0)
-        leave(df, {bit, SLIDING, {}}, g, attached, work);
-      else if (df.excess(bit, g).rolling > 0.0)
-        leave(df, {bit, ROLLING, {}}, g, attached, work);
+      if (df.lift(bit, motion) > df.sites[bit].hold)
+        leave_place(df, bit, NORMAL, motion, attached, work);
+      else if (df.excess(SLIDING, bit, motion) > 0.0)
+        leave_place(df, bit, SLIDING, motion, attached, work);
+      else if (df.excess(ROLLING, bit, motion) > 0.0)
+        leave_place(df, bit, ROLLING, motion, attached, work);
     });
 }
 
 /* ----------------------------------------------------------------------
-   g = inertia force of the current step, which the history does not have yet, or null
+   at a motion which the history does not have yet
 ------------------------------------------------------------------------- */
 
-void Collision::leave(const DetachmentFunctions &df, const Detachment &grain, const double *g, uint64_t *attached,
-                      Workspace &work)
+void Collision::leave_place(const DetachmentFunctions &df, int bit, Mode mode, const Motion &motion, uint64_t *attached,
+                            Workspace &work)
 {
-  const int bit = grain.bit;
+  for (Mode met : {SLIDING, ROLLING})
+    if (df.excess(met, bit, motion) > 0.0 && !has_met(met, df, bit)) course.count[met] += 1.0;
+  const auto &site = df.sites[bit];
+  double direction[3], spin[3], velocity[3];
+  course.turn.to_space(site.n, direction);
+  course.turn.to_space(motion.spin, spin);
+  cross(spin, direction, velocity);
+  for (double &x : velocity) x *= site.shell;
+  leave(df, bit, mode, direction, velocity, attached, work);
+}
+
+void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const double *direction, const double *velocity,
+                      uint64_t *attached, Workspace &work)
+{
   attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
-  work.detached.push_back(grain);
-  const DetachmentFunctions::Excess now = g ? df.excess(bit, g) : DetachmentFunctions::Excess{0.0, 0.0};
-  nslid += now.sliding > 0.0 || has_slid(df, bit);
-  nrolled += now.rolling > 0.0 || has_rolled(df, bit);
+  for (Mode met : {SLIDING, ROLLING}) course.count[met] += has_met(met, df, bit);
+  work.detached.push_back({bit, mode, {}, {}});
+  course.frame.to_space(direction, work.detached.back().direction);
+  course.frame.to_space(velocity, work.detached.back().velocity);
 }
 
 /* ---------------------------------------------------------------------- */
 
-bool Collision::has_slid(const DetachmentFunctions &df, int bit) const
+bool Collision::has_met(Mode mode, const DetachmentFunctions &df, int bit) const
 {
-  const auto excess = [&](const double *a) {
-    const double g[3] = {-a[0], -a[1], -a[2]};
-    return df.excess(bit, g).sliding;
-  };
-  return history.any(excess, 1.0 + df.friction);
+  const auto &site = df.sites[bit];
+  return history.any([&](const Motion &m) { return df.excess(mode, bit, m); }, 1.0 + df.limit(mode, site.lever).slope, site.shell);
 }
 
-bool Collision::has_rolled(const DetachmentFunctions &df, int bit) const
+int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint64_t *attached) const
 {
-  const auto excess = [&](const double *a) {
-    const double g[3] = {-a[0], -a[1], -a[2]};
-    return df.excess(bit, g).rolling;
-  };
-  return history.any(excess, 1.0 + df.sites[bit].lever);
-}
-
-/* ---------------------------------------------------------------------- */
-
-int Collision::sliding_grains(const DetachmentFunctions &df, const uint64_t *attached) const
-{
-  int n = nslid;
+  int n = static_cast<int>(course.count[mode]);
+  if (history.empty() || (mode == SLIDING && course.most <= df.moving && df.friction > 0.0)) return n;
   for (int p = 0; p < df.words(); p++)
-    each_bit(attached[p], [&](int k) { n += has_slid(df, p * PATCH + k); });
-  return n;
-}
-
-int Collision::rolling_grains(const DetachmentFunctions &df, const uint64_t *attached) const
-{
-  int n = nrolled;
-  for (int p = 0; p < df.words(); p++)
-    each_bit(attached[p], [&](int k) { n += has_rolled(df, p * PATCH + k); });
+    if (attached[p] && df.all_exceed(mode, p, history.peak()))
+      n += __builtin_popcountll(attached[p]);
+    else
+      each_bit(attached[p], [&](int k) { n += has_met(mode, df, p * PATCH + k); });
   return n;
 }
 
@@ -336,14 +391,18 @@ double Collision::peak_acceleration() const
 
 /* ---------------------------------------------------------------------- */
 
-bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint64_t *attached,
-                    Workspace &work)
+bool Collision::end(const DetachmentFunctions &df, const double *spin, uint64_t *attached, Workspace &work)
 {
+  Moment last = course.lively;
+  if (!at_rest()) {
+    last = course;
+    course.frame.to_body(spin, last.spin);
+  }
   const size_t before = work.detached.size();
   if (df.criteria.tangential == Criteria::INTEGRATE)
     integrate(df, attached, work);
   else if (df.criteria.tangential != Criteria::OFF)
-    estimate(df, velocity, attached, work);
+    estimate(df, last, attached, work);
   return work.detached.size() > before;
 }
 
@@ -351,10 +410,12 @@ bool Collision::end(const DetachmentFunctions &df, const double *velocity, uint6
    Eqs. 3b and 4-6
 ------------------------------------------------------------------------- */
 
-void Collision::estimate(const DetachmentFunctions &df, const double *velocity, uint64_t *attached, Workspace &work)
+void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint64_t *attached, Workspace &work)
 {
-  const double dv[3] = {v0[0] - velocity[0], v0[1] - velocity[1], v0[2] - velocity[2]};
-  if (dot(dv, dv) <= df.slow2) return;
+  const double dv[3] = {-last.impulse[0], -last.impulse[1], -last.impulse[2]};
+  const double *spin0 = course.spin0, *spin = last.spin;
+  const double fastest = std::sqrt(dot(dv, dv)) + df.reach * (std::sqrt(dot(spin0, spin0)) + 2.0 * std::sqrt(dot(spin, spin)));
+  if (fastest * fastest <= df.slow2) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   const double mu = df.criteria.tangential == Criteria::ESTIMATE ? df.friction : 0.0;
@@ -362,24 +423,35 @@ void Collision::estimate(const DetachmentFunctions &df, const double *velocity, 
   for (int patch = 0; patch < df.words(); patch++) {
     each_bit(attached[patch], [&](int k) {
       const int bit = patch * PATCH + k;
-      const double *n = df.sites[bit].n;
+      const auto &site = df.sites[bit];
+      const double *n = site.n, c = site.hold;
       const double dvn = dot(dv, n);
       if (dvn >= 0.0) return;    // not on the north
-      const double c = df.sites[bit].hold;
-      const double needed = c * df.sites[bit].shell;    // square of the velocity from which the grain is not held: Eq. 3b
-      double vt[3];
-      for (int d = 0; d < 3; d++) vt[d] = dv[d] - dvn * n[d];    // Eq. 4
-      const double vt2 = dot(vt, vt);
-      if (vt2 <= needed) return;
-      // 2 E_fr/m_d = brake (2 c + largest a.n) by Eq. 6, as |2 c - g_n| = 2 c + a.n for a grain that has not lifted off
-      const double speed = std::sqrt(vt2);
-      const double brake = 0.5 * mu * speed * time;
-      const auto left = [&](double largest) { return vt2 - brake * (2.0 * c + largest); };    // Eq. 5, squared
-      if (left(dot(history.peak(), n)) <= needed) return;    // spares most grains that stay the whole history
-      const double vt2_left = left(history.largest_along(n, hint));
-      if (vt2_left <= needed) return;
-      const double kept = std::sqrt(vt2_left) / speed;
-      leave(df, {bit, TANGENTIAL, {kept * vt[0], kept * vt[1], kept * vt[2]}}, nullptr, attached, work);
+      const double needed = c * site.shell;    // square of the velocity from which the grain is not held: Eq. 3b
+      // slip over the surface, and the velocity of the surface below the grain's centre
+      double slip[3], surface[3], turned[3];
+      cross(spin0, n, turned);
+      cross(spin, n, surface);
+      for (int d = 0; d < 3; d++) {
+        surface[d] *= site.shell;
+        slip[d] = dv[d] - dvn * n[d] + site.shell * turned[d] - surface[d];    // Eq. 4
+      }
+      const double slip2 = dot(slip, slip), size = std::sqrt(slip2), surface2 = dot(surface, surface);
+      const double fastest = size + std::sqrt(surface2);
+      if (fastest * fastest <= needed) return;
+      // 2 E_fr/m_d = brake (2 c + largest -g.n) by Eq. 6, as |2 c - g_n| = 2 c - g_n for a grain that has not lifted off
+      const double brake = 0.5 * mu * size * last.time;
+      const auto part_left = [&](double largest) {    // of the slip, Eq. 5
+        return size > 0.0 ? std::sqrt(std::max(0.0, slip2 - brake * (2.0 * c + largest))) / size : 0.0;
+      };
+      const auto square = [&](double part) { return part * part * slip2 + 2.0 * part * dot(slip, surface) + surface2; };
+      // spares most grains that stay the whole history: it is convex in the part that is left
+      if (surface2 <= needed && square(part_left(-history.peak().lift(n, site.shell))) <= needed) return;
+      const double part = part_left(history.largest_push(n, site.shell, hint));
+      if (square(part) <= needed) return;
+      double v[3];
+      for (int d = 0; d < 3; d++) v[d] = part * slip[d] + surface[d];
+      leave(df, bit, TANGENTIAL, n, v, attached, work);
     });
   }
 }
@@ -405,10 +477,15 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
       for (int k = 0; k < parts; k++) motion.advance(mean, span.duration / parts);
     }
     motion.release();
-    for (int k = 0; k < motion.grains(); k++)
-      if (!motion.attached(k))
-        leave(df, {bits[k], TANGENTIAL, {motion.velocity(k, 0), motion.velocity(k, 1), motion.velocity(k, 2)}}, nullptr, attached,
-              work);
+    for (int k = 0; k < motion.grains(); k++) {
+      if (motion.attached(k)) continue;
+      double n[3], w[3];
+      for (int d = 0; d < 3; d++) {
+        n[d] = motion.direction(k, d);
+        w[d] = motion.velocity(k, d);
+      }
+      leave(df, bits[k], TANGENTIAL, n, w, attached, work);
+    }
     motion.clear();
   };
 
@@ -418,8 +495,11 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
       const DetachmentFunctions::Site &site = df.sites[bit];
       const auto [turn, centrifugal] = bound.of(site.n, site.hold, site.shell);
       const double needed = site.hold - centrifugal;
-      const auto excess = [&, turn = turn](const double *a) { return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed; };
-      if (needed >= 0.0 && !history.any(excess, 1.0 + turn)) return;
+      const auto excess = [&, turn = turn](const Motion &m) {
+        const double *a = m.acceleration;
+        return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed;
+      };
+      if (needed >= 0.0 && !history.any(excess, 1.0 + turn, 0.0)) return;
       bits[motion.grains()] = bit;
       motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius);
       if (motion.full()) run();
@@ -429,48 +509,67 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
 
 /* ---------------------------------------------------------------------- */
 
-int Collision::lost_north(const DetachmentFunctions &df, const double *velocity, const uint64_t *attached) const
+int Collision::lost_north(const DetachmentFunctions &df, const uint64_t *attached) const
 {
-  const double dv[3] = {velocity[0] - v0[0], velocity[1] - v0[1], velocity[2] - v0[2]};
   int lost = 0;
   for (size_t patch = 0; patch < start.size(); patch++)
     each_bit(start[patch] & ~attached[patch], [&](int k) {
-      const int bit = static_cast<int>(patch) * PATCH + k;
-      if (df.normal(bit, dv) > 0.0) lost++;
+      lost += dot(df.sites[static_cast<int>(patch) * PATCH + k].n, course.impulse) > 0.0;
     });
   return lost;
 }
 
 /* ----------------------------------------------------------------------
-   v0, time, counts, sizes; then start, history and record. The window is opened anew, which changes no result.
+   sizes, course; then start, history and record. The window is opened anew, which changes no result.
 ------------------------------------------------------------------------- */
 
-static constexpr int PACKED_SCALARS = 9;
+namespace {
+
+constexpr int PACKED_SIZES = 3;
+template <typename T> constexpr size_t numbers_of()
+{
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0, "travels as doubles");
+  return sizeof(T) / sizeof(double);
+}
+
+}    // namespace
 
 int Collision::packed_size() const
 {
-  return static_cast<int>(PACKED_SCALARS + start.size() + history.numbers().size()) + record.packed_size();
+  return static_cast<int>(PACKED_SIZES + numbers_of<Course>() + start.size() + history.kept().size() * numbers_of<Motion>()) +
+      record.packed_size();
 }
 
 void Collision::pack(double *buf) const
 {
-  const std::vector<double> &numbers = history.numbers();
-  for (double x : {v0[0], v0[1], v0[2], time, double(nslid), double(nrolled), double(start.size()), double(numbers.size()),
-                   double(record.packed_size())})
-    *buf++ = x;
-  std::memcpy(buf, start.data(), start.size() * sizeof(uint64_t));
-  record.pack(std::copy(numbers.begin(), numbers.end(), buf + start.size()));
+  const std::vector<Motion> &motions = history.kept();
+  *buf++ = double(start.size());
+  *buf++ = double(motions.size());
+  *buf++ = record.packed_size();
+  const auto put = [&](const void *data, size_t numbers) {
+    std::memcpy(buf, data, numbers * sizeof(double));
+    buf += numbers;
+  };
+  put(&course, numbers_of<Course>());
+  put(start.data(), start.size());
+  put(motions.data(), motions.size() * numbers_of<Motion>());
+  record.pack(buf);
 }
 
 void Collision::unpack(const double *buf)
 {
-  begin(buf);
-  time = buf[3];
-  nslid = static_cast<int>(buf[4]);
-  nrolled = static_cast<int>(buf[5]);
-  start.resize(static_cast<size_t>(buf[6]));
-  std::memcpy(start.data(), buf + PACKED_SCALARS, start.size() * sizeof(uint64_t));
-  const double *p = buf + PACKED_SCALARS + start.size();
-  history.assign(p, p + static_cast<size_t>(buf[7]));
-  record.unpack(p + static_cast<size_t>(buf[7]), static_cast<int>(buf[8]));
+  const double none[3] = {0.0, 0.0, 0.0};
+  begin(Quaternion(), none);
+  start.resize(static_cast<size_t>(*buf++));
+  std::vector<Motion> motions(static_cast<size_t>(*buf++));
+  const int recorded = static_cast<int>(*buf++);
+  const auto get = [&](void *data, size_t numbers) {
+    std::memcpy(data, buf, numbers * sizeof(double));
+    buf += numbers;
+  };
+  get(&course, numbers_of<Course>());
+  get(start.data(), start.size());
+  get(motions.data(), motions.size() * numbers_of<Motion>());
+  history.assign(motions.data(), motions.size());
+  record.unpack(buf, recorded);
 }

@@ -7,6 +7,7 @@
 
 #include "acceleration_history.h"
 #include "impulse_record.h"
+#include "quaternion.h"
 #include "texture.h"
 
 #include <cstdint>
@@ -14,8 +15,9 @@
 
 /* The detachment functions: which grains of a texture leave a carrier in a collision, from the carrier's motion alone.
 
-   All criteria compare accelerations, since forces on a grain scale with its mass: g = -a is the inertia force per grain
-   mass on a grain that moves with its carrier, c = F_c/m_d the pull-off force per grain mass. With g_n = g.n and
+   All criteria compare accelerations, since forces on a grain scale with its mass: g = -(a + alpha x r + omega x (omega x r))
+   is the inertia force per grain mass on a grain that moves with its carrier, r = (R_p + R_d) n, and c = F_c/m_d the
+   pull-off force per grain mass. With g_n = g.n and
    g_t = |g - g_n n| on the grain at direction n, the criteria of Ibrahim et al., J. Aerosol Sci. 34, 765 (2003), and
    Cui & Sommerfeld, Powder Technol. 344, 741 (2019), are (Eq. 2 of the paper)
 
@@ -63,6 +65,11 @@ class DetachmentFunctions {
   double least_hold() const { return least; }
   double largest_hold() const { return largest; }
 
+  /*! Whether inertia can make a grain slide (or leave) that moves with its carrier: if none can, it is at rest */
+  bool may_move(const Motion &motion) const;
+  /*! Whether a carrier that nothing touches spins fast enough to throw off a grain */
+  bool may_spin_off(double spin2) const { return reach * spin2 > least; }
+
  private:
   friend class Collision;
 
@@ -71,6 +78,8 @@ class DetachmentFunctions {
   double carrier_radius;
   double mass;
   double least, largest;            // of hold
+  double reach;                     // largest shell
+  double moving;                    // least inertia force per mass that makes a grain slide
   double slow2;                     // no tangential lift-off below this square of a velocity
   std::vector<uint64_t> all;        // bits that hold a grain: all but the last ones of the last word
   // by bit: all that is asked of a grain in one cache line
@@ -83,29 +92,31 @@ class DetachmentFunctions {
     int grain;        // index in the texture
   };
   std::vector<Site> sites;
-  // by patch: centre, radius (chord) and least hold of its grains
+  // by patch: a direction, the largest chord from it to a grain, and the extremes of its grains
   struct Patch {
-    double centre[3], radius, hold;
+    double centre[3], radius;
+    double least_hold, largest_hold, largest_lever;
   };
   std::vector<Patch> patches;
 
-  double normal(int bit, const double *g) const
-  {
-    const double *n = sites[bit].n;
-    return g[0] * n[0] + g[1] * n[1] + g[2] * n[2];
-  }
-  // by how much sliding and rolling of Eq. 2 are met at the inertia force g, per grain mass
-  struct Excess {
-    double sliding, rolling;
+  double lift(int bit, const Motion &motion) const { return motion.lift(sites[bit].n, sites[bit].shell); }
+  // the criterion g_t > slope |factor c - g_n| of sliding or rolling
+  struct Limit {
+    double factor, slope;
   };
-  Excess excess(int bit, const double *g) const;
+  Limit limit(Mode mode, double lever) const { return mode == SLIDING ? Limit{2.0, friction} : Limit{1.0, lever}; }
+  // by how much a grain meets it, per grain mass
+  double excess(Mode mode, int bit, const Motion &motion) const;
+  // whether all grains of a patch do
+  bool all_exceed(Mode mode, int patch, const Motion &motion) const;
 };
 
 /*! One grain that has just left */
 struct Detachment {
   int bit;
   Mode mode;
-  double velocity[3];    //!< relative to the carrier's centre
+  double direction[3];    //!< n, in space
+  double velocity[3];     //!< relative to the carrier's centre, in space
 };
 
 /*! What the collisions of a rank share while one of them is looked at */
@@ -119,41 +130,55 @@ struct Workspace {
   std::vector<int> leaving;
 };
 
-/*! Collision of one carrier, from the first step with a contact force to the first without
+/*! Collision of one carrier
+ *
+ * It begins with the first contact force after free flight, or where a carrier at rest is moved so hard that a grain could
+ * slide. It ends with the first step without contact force: an isolated impact is followed from first contact to rebound, as
+ * in the paper. Or it comes to rest: for QUIET times as long as it took, no inertia could move any grain, nor was the
+ * acceleration larger than before. What came after its last lively step then does not count. In a bed of carriers this
+ * ends the collision where neither a first contact nor a rebound could be told.
+ *
+ * Vectors come in space and are kept in the frame of first contact, the carrier's axes at the first step, which do not
+ * turn with it later. On top of that it keeps how far the carrier has turned since.
  *
  * In most steps no grain can change, and little is done in the others:
  * - A grain that holds at q holds at lambda q + e too if lambda <= 1 and |e| <= (1 - lambda) c: unloading needs no look.
  * - While g stays in a window, no farther than S along an axis and E from it, only those grains can lift off that would
  *   at S with E to help. They are listed by the force along the axis from which each could, and a step of time
  *   sees only the head of that list. A window is opened where g leaves the last one.
+ * - What spin adds to g_n is at most |r| omega^2: it counts as a part of E.
  * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
- *   holds, g_t + k g_n is a convex function of g, so the accelerations that the history keeps decide. */
+ *   holds, g_t + k g_n is a convex function of g, so the motions that the history keeps decide. */
 class Collision {
  public:
-  /*! Starts with the velocity before the first step that has a contact force */
-  void begin(const double *velocity);
+  /*! Starts before the first step that has a contact force
+   *  \param orientation  of the carrier at that step
+   *  \param spin         before that contact */
+  void begin(const Quaternion &orientation, const double *spin);
 
   /*! One time step: Eq. 2 and lift-off normal
-   *  \param acceleration  contact force / carrier mass
-   *  \param attached      bits of the grains; those that leave are cleared
-   *  \param work          the grains that leave are appended to its list
-   *  \return              true if any left */
-  bool step(const DetachmentFunctions &functions, const double *acceleration, double dt, uint64_t *attached,
-            Workspace &work);
+   *  \param motion    its spin is that of the middle of the step that ends now, as a leapfrog has it
+   *  \param attached  bits of the grains; those that leave are cleared
+   *  \param work      the grains that leave are appended to its list
+   *  \return          true if any left */
+  bool step(const DetachmentFunctions &functions, const Motion &motion, double dt, uint64_t *attached, Workspace &work);
 
-  /*! Lift-off tangential, with the velocity at the first step without contact force: Eqs. 3b and 4-6 or INTEGRATE */
-  bool end(const DetachmentFunctions &functions, const double *velocity, uint64_t *attached,
-           Workspace &work);
+  /*! Whether it has come to rest though the contact lasts */
+  bool at_rest() const { return course.steps - course.lively_end > QUIET * (course.lively_end - course.burst); }
+
+  /*! Lift-off tangential, at the first step without contact force or at rest: Eqs. 3b and 4-6 or INTEGRATE
+   *  \param spin  after the contact */
+  bool end(const DetachmentFunctions &functions, const double *spin, uint64_t *attached, Workspace &work);
 
   /*! Grains lost since begin() on the north, n.(velocity - velocity before contact) > 0; before the end with the
    *  velocity so far */
-  int lost_north(const DetachmentFunctions &functions, const double *velocity, const uint64_t *attached) const;
+  int lost_north(const DetachmentFunctions &functions, const uint64_t *attached) const;
 
-  double duration() const { return time; }           //!< of the steps so far
+  /*! Of the steps so far, at rest of those until then */
+  double duration() const { return at_rest() ? course.lively.time : course.time; }
   double peak_acceleration() const;           //!< largest |contact acceleration| so far
-  /*! Grains that have met the sliding (rolling) criterion of Eq. 2 since begin() */
-  int sliding_grains(const DetachmentFunctions &functions, const uint64_t *attached) const;
-  int rolling_grains(const DetachmentFunctions &functions, const uint64_t *attached) const;
+  /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin() */
+  int grains_that(Mode mode, const DetachmentFunctions &functions, const uint64_t *attached) const;
 
   // transfer to another rank and restart, as numbers
   int packed_size() const;
@@ -161,17 +186,30 @@ class Collision {
   void unpack(const double *buf);
 
  private:
-  double v0[3];
-  double time;
-  int nslid, nrolled;               // of the grains that have left
-  std::vector<uint64_t> start;      // attached at begin(), kept from when the first grain could leave
+  static constexpr double QUIET = 3.0;
+
+  struct Moment {
+    double time;
+    double impulse[3];    // contact force/carrier mass, integrated since begin()
+    double spin[3];
+  };
+  struct Course : Moment {        // up to now
+    Quaternion frame, turn;       // of first contact in space; of the carrier in that frame
+    double spin0[3];              // before contact
+    double steps;                 // so far
+    double burst, lively_end;     // of them, when the present or last lively ones began and ended
+    Moment lively;                // at their end
+    double most;                  // largest |g| on any grain, or more
+    double count[NMODES];         // of the grains that have left, those that had met SLIDING and ROLLING
+  } course;
+  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
   AccelerationHistory history;
-  ImpulseRecord record;             // with INTEGRATE only
+  ImpulseRecord record;           // with INTEGRATE only
 
   struct Window {
     double axis[3], from, along, aside;    // from where it was opened to S = along, E = aside
     double steps_per_force;
-    double strayed2;                       // square of the farthest that g has been from the axis
+    double strayed;                        // the farthest that g has been from the axis
     double width;                          // E/|g| for the next window: as g strays
     static constexpr int STEPS = 256;      // from `from` to `along`
     int step_of(double force) const;
@@ -180,17 +218,17 @@ class Collision {
     std::vector<int> close;                          // could lift off now
   } window;
 
-  void open_window(const DetachmentFunctions &functions, const double *g, const uint64_t *attached, Workspace &work);
-  void lift_off(const DetachmentFunctions &functions, const double *g, uint64_t *attached,
-                Workspace &work);
-  void check_all(const DetachmentFunctions &functions, const double *g, uint64_t *attached,
-                 Workspace &work);
-  void estimate(const DetachmentFunctions &functions, const double *velocity, uint64_t *attached, Workspace &work);
+  void open_window(const DetachmentFunctions &functions, const Motion &motion, const uint64_t *attached, Workspace &work);
+  void lift_off(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
+  void check_all(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
+  void estimate(const DetachmentFunctions &functions, const Moment &last, uint64_t *attached, Workspace &work);
   void integrate(const DetachmentFunctions &functions, uint64_t *attached, Workspace &work);
-  void leave(const DetachmentFunctions &functions, const Detachment &grain, const double *g, uint64_t *attached,
-             Workspace &work);
-  bool has_slid(const DetachmentFunctions &functions, int bit) const;
-  bool has_rolled(const DetachmentFunctions &functions, int bit) const;
+  // a grain leaves the place where it stuck, or one along the surface
+  void leave_place(const DetachmentFunctions &functions, int bit, Mode mode, const Motion &motion, uint64_t *attached,
+                   Workspace &work);
+  void leave(const DetachmentFunctions &functions, int bit, Mode mode, const double *direction, const double *velocity,
+             uint64_t *attached, Workspace &work);
+  bool has_met(Mode mode, const DetachmentFunctions &functions, int bit) const;
 };
 
 }    // namespace Dust

@@ -1,0 +1,50 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_MOTION_H
+#define DUST_CORE_MOTION_H
+
+#include "geometry.h"
+
+#include <cmath>
+
+namespace Dust {
+
+/*! How a carrier's contacts move it at one moment */
+struct Motion {
+  double acceleration[3];            //!< a = contact force / mass
+  double angular_acceleration[3];    //!< alpha = contact torque / moment of inertia
+  double spin[3];                    //!< omega
+
+  bool turns() const { return dot(angular_acceleration, angular_acceleration) > 0.0 || dot(spin, spin) > 0.0; }
+
+  /*! |alpha| + omega^2: times |r|, at least what turning adds to g */
+  double turning() const { return std::sqrt(dot(angular_acceleration, angular_acceleration)) + dot(spin, spin); }
+
+  /*! Inertia force per mass on a grain that moves with its carrier, g = -(a + alpha x r + omega x (omega x r))
+   *  \param n      direction of the grain
+   *  \param shell  |r| = R_p + R_d */
+  void inertia(const double *n, double shell, double *g) const
+  {
+    double euler[3];
+    cross(angular_acceleration, n, euler);
+    const double along = dot(spin, n), spin2 = dot(spin, spin);
+    for (int d = 0; d < 3; d++) g[d] = -acceleration[d] - shell * (euler[d] + along * spin[d] - spin2 * n[d]);
+  }
+
+  /*! Its outward part g.n, in which the angular acceleration has none */
+  double lift(const double *n, double shell) const
+  {
+    return shell * centrifugal(n) - dot(acceleration, n);
+  }
+  double centrifugal(const double *n) const
+  {
+    const double along = dot(spin, n);
+    return dot(spin, spin) - along * along;
+  }
+};
+
+}    // namespace Dust
+
+#endif
