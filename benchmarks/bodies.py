@@ -28,7 +28,7 @@ INPUTS = ROOT / "lammps-inputs"
 RESOLVED, FUNCTIONS = HERE / "resolved.csv", HERE / "functions.csv"
 METHODS = ("estimate", "integrate")
 LIMIT = 0.03  # largest difference
-CASE = ("kind", "speed", "angle", "spin", "offset", "wall_friction")
+CASE = ("kind", "speed", "angle", "spin", "offset", "wall_friction", "coverage", "grain_contacts")
 ROW = (*CASE, "carrier", "grains", "grains_off", "dispersion_ratio", "south", "north", "vx", "vz", "spin_after", "last_neck", "wall_seconds")
 
 
@@ -39,29 +39,34 @@ class Kind:
     resolved: str
     functions: str
     variables: tuple[str, ...]
+    resolved_variables: tuple[str, ...] = ()
     resolved_more: dict[str, str] = field(default_factory=dict)
 
 
 KINDS = {
-    "spin": Kind("in.impact.resolved", "in.impact.spin", ("speed", "angle", "spin", "wall_friction"), {"limit": "20e-6"}),
+    "spin": Kind("in.impact.resolved", "in.impact.spin", ("speed", "angle", "spin", "wall_friction"), (), {"limit": "20e-6"}),
     "collision": Kind("in.collision.resolved", "in.collision", ("speed", "offset", "wall_friction")),
     # as in.impact.distribution has them
     "sizes": Kind(
         "in.impact.resolved",
         "in.impact.distribution",
-        ("speed", "angle", "wall_friction"),
+        ("speed", "angle", "wall_friction", "coverage"),
+        ("grain_contacts",),
         {"limit": "20e-6", "grain_diameter": "15e-6", "sigma_g": "1.5", "bare": "0.4"},
     ),
 }
 
 
 def cases() -> list[tuple[str, ...]]:
+    usual = (0.2, "yes")  # coverage, grain_contacts
     spins = (-5000, -2000, -500, 500, 2000, 5000)
-    rough = [("spin", 8, angle, spin, 0, 0.3) for angle in (90, 60) for spin in spins]
-    smooth = [("spin", 8, angle, spin, 0, 0.05) for angle in (90, 60) for spin in (-5000, 5000)]
-    collisions = [("collision", speed, 90, 0, offset, 0.05) for speed in (8, 12) for offset in (0, 0.3, 0.6)]
-    collisions += [("collision", speed, 90, 0, offset, 0.3) for speed, offset in ((8, 0.3), (8, 0.6), (12, 0.6))]
-    sizes = [("sizes", speed, angle, 0, 0, 0.05) for speed, angle in ((8, 90), (12, 90), (12, 60))]
+    rough = [("spin", 8, angle, spin, 0, 0.3, *usual) for angle in (90, 60) for spin in spins]
+    smooth = [("spin", 8, angle, spin, 0, 0.05, *usual) for angle in (90, 60) for spin in (-5000, 5000)]
+    hits = [(speed, offset, 0.05) for speed in (8, 12) for offset in (0, 0.3, 0.6)]
+    hits += [(8, 0.3, 0.3), (8, 0.6, 0.3), (12, 0.6, 0.3)]
+    collisions = [("collision", speed, 90, 0, offset, friction, *usual) for speed, offset, friction in hits]
+    sizes = [("sizes", speed, 90, 0, 0, 0.05, coverage, "yes") for coverage in (0.02, 0.2) for speed in (8, 12)]
+    sizes += [("sizes", speed, angle, 0, 0, 0.05, 0.2, "no") for speed, angle in ((8, 90), (12, 90), (12, 60))]
     return [tuple(str(value) for value in case) for case in rough + smooth + collisions + sizes]
 
 
@@ -96,9 +101,9 @@ def run_deck(deck: str, variables: dict[str, str], case: tuple[str, ...]) -> lis
     ]
 
 
-def variables_of(case: tuple[str, ...]) -> dict[str, str]:
+def variables_of(case: tuple[str, ...], names: tuple[str, ...]) -> dict[str, str]:
     numbers = dict(zip(CASE, case, strict=True))
-    return {name: numbers[name] for name in KINDS[case[0]].variables}
+    return {name: numbers[name] for name in names}
 
 
 def key(row: dict[str, str]) -> tuple[str, ...]:
@@ -130,7 +135,7 @@ def run() -> None:
         if case in done:
             continue
         kind = KINDS[case[0]]
-        new = run_deck(kind.resolved, variables_of(case) | kind.resolved_more, case)
+        new = run_deck(kind.resolved, variables_of(case, kind.variables + kind.resolved_variables) | kind.resolved_more, case)
         print(*case, *(f"{row['dispersion_ratio']} (neck {row['last_neck']}, {row['wall_seconds']} s)" for row in new), flush=True)
         rows = sorted(rows + new, key=lambda row: (order.index(key(row)), row["carrier"]))
         write(RESOLVED, ROW, rows)
@@ -141,7 +146,8 @@ def functions() -> list[dict[str, str]]:
     rows = []
     for case in cases():
         for method in METHODS:
-            new = run_deck(KINDS[case[0]].functions, variables_of(case) | {"tangential": method}, case)
+            kind = KINDS[case[0]]
+            new = run_deck(kind.functions, variables_of(case, kind.variables) | {"tangential": method}, case)
             rows += [{**row, "tangential": method} for row in new]
     write(FUNCTIONS, ("tangential", *(name for name in ROW if name not in ("grains", "last_neck", "wall_seconds"))), [
         {name: value for name, value in row.items() if name not in ("grains", "last_neck", "wall_seconds")} for row in rows
@@ -159,7 +165,7 @@ def comparison(resolved: list[dict[str, str]], computed: list[dict[str, str]]) -
         "sizes": (
             "Lognormal grains, x50,3 = 15 um, sigma_g = 1.5",
             "in.impact.distribution",
-            ("speed", "angle"),
+            ("speed", "angle", "coverage", "grain_contacts"),
         ),
     }
     largest: dict[str, list[str]] = {}
