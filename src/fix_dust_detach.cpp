@@ -622,15 +622,18 @@ void FixDustDetach::shed()
   std::vector<char> leaves(all.size(), 0);
   if (emit) find_room(all, carrier, leaves);
 
-  for (size_t k = 0; k < all.size(); k++) {
-    const int i = carrier[k];
-    if (i < 0) continue;
-    if (emit && !leaves[k]) {
-      mine.no_room += 1.0;
-      continue;
+  for (size_t first = 0, last; first < all.size(); first = last) {
+    const int i = carrier[first];
+    double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};    // of what leaves carrier i
+    for (last = first; last < all.size() && all[last][CARRIER] == all[first][CARRIER]; last++) {
+      if (i >= 0 && emit && !leaves[last]) mine.no_room += 1.0;
+      if (emit && !leaves[last]) continue;
+      mass += all[last][LOSS_MASS];
+      for (int d = 0; d < 3; d++) momentum[d] += all[last][LOSS_MASS] * all[last][LOSS_V + d];
     }
-    const double mass = atom->rmass[i], rest = mass - all[k][LOSS_MASS];
-    for (int d = 0; d < 3; d++) atom->v[i][d] = (mass * atom->v[i][d] - all[k][LOSS_MASS] * all[k][LOSS_V + d]) / rest;
+    if (i < 0) continue;
+    const double rest = atom->rmass[i] - mass;
+    for (int d = 0; d < 3; d++) atom->v[i][d] = (atom->rmass[i] * atom->v[i][d] - momentum[d]) / rest;
     atom->rmass[i] = rest;
   }
   if (!emit) return;

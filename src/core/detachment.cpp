@@ -188,7 +188,7 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &in_space, doub
   c.time += dt;
   c.steps += 1.0;
   std::copy_n(m.spin, 3, c.spin);
-  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(m.acceleration, dt);
+  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(m.acceleration, c.spin, dt);
   if (!c.turn.is_none()) {    // along the carrier's axes
     c.turn.to_body(m.acceleration, m.acceleration);
     c.turn.to_body(m.angular_acceleration, m.angular_acceleration);
@@ -462,19 +462,32 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
 
 void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Workspace &work)
 {
-  const MotionBound bound(record, peak_acceleration(), df.rolling, df.carrier_radius);
-  if (!bound.any_may_leave(df.least, df.largest)) return;
+  const MotionBound bound(record, course.spin0, peak_acceleration(), df.rolling, df.carrier_radius);
+  if (!bound.any_may_leave(df.least, df.largest, df.reach)) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   SurfaceMotion motion(df.friction, df.rolling);
   int bits[SurfaceMotion::LANES];
   // a collision of few time steps is followed in more
-  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / record.spans().size()) + 1;
+  const std::vector<ImpulseRecord::Span> &spans = record.spans();
+  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;
   const auto run = [&]() {
-    for (const ImpulseRecord::Span &span : record.spans()) {
-      const double *j = span.impulse, per_time = 1.0 / span.duration;
-      const double mean[3] = {j[0] * per_time, j[1] * per_time, j[2] * per_time};
-      for (int k = 0; k < parts; k++) motion.advance(mean, span.duration / parts);
+    double before[3];
+    std::copy_n(course.spin0, 3, before);
+    for (size_t i = 0; i < spans.size(); i++) {
+      // spin at the end: between the means of this span and the next
+      const ImpulseRecord::Span &span = spans[i], &next = spans[std::min(i + 1, spans.size() - 1)];
+      double mean[3], after[3];
+      for (int d = 0; d < 3; d++) {
+        mean[d] = span.impulse[d] / span.duration;
+        after[d] = 0.5 * (span.turn[d] / span.duration + next.turn[d] / next.duration);
+      }
+      for (int k = 1; k <= parts; k++) {
+        double spin[3];
+        for (int d = 0; d < 3; d++) spin[d] = before[d] + (after[d] - before[d]) * k / parts;
+        motion.advance(mean, spin, span.duration / parts);
+      }
+      std::copy_n(after, 3, before);
     }
     motion.release();
     for (int k = 0; k < motion.grains(); k++) {
@@ -501,7 +514,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
       };
       if (needed >= 0.0 && !history.any(excess, 1.0 + turn, 0.0)) return;
       bits[motion.grains()] = bit;
-      motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius);
+      motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius, course.spin0);
       if (motion.full()) run();
     });
   run();

@@ -17,7 +17,7 @@ void ImpulseRecord::clear()
 
 /* ---------------------------------------------------------------------- */
 
-void ImpulseRecord::add(const double *a, double dt)
+void ImpulseRecord::add(const double *a, const double *spin, double dt)
 {
   if (course.empty()) {
     course.reserve(MOST);    // once in the life of a record
@@ -29,7 +29,10 @@ void ImpulseRecord::add(const double *a, double dt)
   }
   Span &last = course.back();
   last.duration += dt;
-  for (int d = 0; d < 3; d++) last.impulse[d] += a[d] * dt;
+  for (int d = 0; d < 3; d++) {
+    last.impulse[d] += a[d] * dt;
+    last.turn[d] += spin[d] * dt;
+  }
   steps_of_last++;
 }
 
@@ -39,9 +42,14 @@ void ImpulseRecord::merge_neighbours()
 {
   static_assert(MOST % 2 == 0, "spans are merged in pairs");
   for (int k = 0; k < MOST / 2; k++) {
-    const Span a = course[2 * k], b = course[2 * k + 1];
-    course[k] = {a.duration + b.duration,
-                 {a.impulse[0] + b.impulse[0], a.impulse[1] + b.impulse[1], a.impulse[2] + b.impulse[2]}};
+    const Span &b = course[2 * k + 1];
+    Span sum = course[2 * k];
+    sum.duration += b.duration;
+    for (int d = 0; d < 3; d++) {
+      sum.impulse[d] += b.impulse[d];
+      sum.turn[d] += b.turn[d];
+    }
+    course[k] = sum;
   }
   course.resize(MOST / 2);
   steps_per_span *= 2;

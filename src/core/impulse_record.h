@@ -9,7 +9,7 @@
 
 namespace Dust {
 
-/*! The course of a collision in bounded memory: impulses per carrier mass over spans of time
+/*! The course of a collision in bounded memory: impulses per carrier mass, and how far it turned, over spans of time
  *
  * A span takes so many time steps. When there are MOST spans, neighbours become one, and spans are twice as long from
  * there on: a collision is recorded in MOST/2 to MOST of them, or in its time steps if these are fewer. The
@@ -21,12 +21,13 @@ class ImpulseRecord {
   struct Span {
     double duration;
     double impulse[3];    // contact force/carrier mass, integrated over the time steps
+    double turn[3];       // spin, integrated likewise
   };
 
   void clear();
 
   /*! One time step */
-  void add(const double *acceleration, double dt);
+  void add(const double *acceleration, const double *spin, double dt);
 
   const std::vector<Span> &spans() const { return course; }
 

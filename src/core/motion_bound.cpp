@@ -11,12 +11,22 @@
 
 using namespace Dust;
 
-MotionBound::MotionBound(const ImpulseRecord &record, double peak, double rolling, double carrier_radius) :
+MotionBound::MotionBound(const ImpulseRecord &record, const double *spin, double peak, double rolling, double carrier_radius) :
     peak(peak), rolling(rolling), carrier_radius(carrier_radius)
 {
+  double last[3] = {spin[0], spin[1], spin[2]};
+  fastest = std::sqrt(dot(last, last));
   for (const ImpulseRecord::Span &span : record.spans()) {
     time += span.duration;
     for (int d = 0; d < 3; d++) axis[d] += span.impulse[d];
+    double change[3];
+    for (int d = 0; d < 3; d++) {
+      const double mean = span.turn[d] / span.duration;
+      change[d] = mean - last[d];
+      last[d] = mean;
+    }
+    fastest = std::max(fastest, std::sqrt(dot(last, last)));
+    spun += std::sqrt(dot(change, change));
   }
   const double size = std::sqrt(dot(axis, axis));
   for (double &x : axis) x = size > 0.0 ? x / size : 0.0;
@@ -30,27 +40,34 @@ MotionBound::MotionBound(const ImpulseRecord &record, double peak, double rollin
 
 /* ---------------------------------------------------------------------- */
 
-// sqrt(5/2) theta_crit s_max t
 double MotionBound::spring(double hold, double shell) const
 {
   const double s = 2.0 * hold * carrier_radius / shell * (1.0 + std::sqrt(1.0 + peak / hold));
   return std::sqrt(2.5) * rolling * s * time;
 }
 
+double MotionBound::spin(double shell) const
+{
+  const double grain = shell - carrier_radius;
+  return std::sqrt(shell * shell + 0.4 * grain * grain) * spun + 0.5 * shell * fastest * fastest * time;
+}
+
 /* ---------------------------------------------------------------------- */
 
 MotionBound::Bound MotionBound::of(const double *n, double hold, double shell) const
 {
-  const double held = spring(hold, shell), turn = MARGIN * (along + aside + held) * time / shell;
+  const double own = spring(hold, shell) + spin(shell);
+  const double turn = MARGIN * ((along + aside + own) / shell + fastest) * time;
   const double u = dot(n, axis), across = std::sqrt(std::max(0.0, 1.0 - u * u)) + turn;    // of the axis in the tangential plane
-  const double w = along * std::min(1.0, across) + aside + held;
+  const double w = along * std::min(1.0, across) + aside + own + shell * fastest;
   return {turn, MARGIN * w * w / shell};
 }
 
 /* ---------------------------------------------------------------------- */
 
-bool MotionBound::any_may_leave(double least_hold, double largest_hold) const
+bool MotionBound::any_may_leave(double least_hold, double largest_hold, double largest_shell) const
 {
-  const double w = along + aside + spring(largest_hold, carrier_radius);
-  return peak * (1.0 + MARGIN * w * time / carrier_radius) + MARGIN * w * w / carrier_radius > least_hold;
+  const double v = along + aside + spring(largest_hold, carrier_radius) + spin(largest_shell);
+  const double turn = MARGIN * (v / carrier_radius + fastest) * time, w = v + largest_shell * fastest;
+  return peak * (1.0 + turn) + MARGIN * w * w / carrier_radius > least_hold;
 }

@@ -11,19 +11,27 @@ namespace Dust {
 
 /*! Which grains stay whatever they do in a collision: spares most of them SurfaceMotion
  *
- * With the energy E = |w|^2/2 + |p|^2/5 per grain mass and A the tangential part of -a, the motion of surface_motion.h gives
- * dE/dt = w.A + f.u - s psi.p <= sqrt(2 E) (|A| + sqrt(5/2) s theta_crit), as friction only takes, |w| <= sqrt(2 E) and
- * |p| <= sqrt(5/2) sqrt(2 E). So the velocity stays below
+ * In the terms of surface_motion.h, with the energy E = |v|^2/2 + |p|^2/5 per grain mass, A the tangential part of -a and
+ * alpha = domega/dt, the motion over the surface gives
  *
- *   W = integral |A| dt + sqrt(5/2) theta_crit s_max t,    s_max = 2 c (R_12/R_d) (1 + sqrt(1 + a_max/c)),
+ *   dE/dt = v.A + f.u - s psi.p - v.(|r_pd| alpha x n) - (2/5) p.(R_d alpha x n) - |r_pd| (omega.n) v.omega
+ *         <= sqrt(2 E) (|A| + sqrt(5/2) s theta_crit + l |alpha| + |r_pd| |omega|^2/2),    l^2 = |r_pd|^2 + (2/5) R_d^2,
  *
- * n turns by less than W t/|r_pd|, and F_n/m stays below the largest -a.n + |a| W t/|r_pd| of the collision and W^2/|r_pd|. */
+ * as friction only takes, |v| <= sqrt(2 E) and |p| <= sqrt(5/2) sqrt(2 E). The last term is what is left of (omega.n) n x w:
+ * the part with v does no work. So |v| stays below
+ *
+ *   V = integral |A| + l |alpha| dt + (sqrt(5/2) theta_crit s_max + |r_pd| omega_max^2/2) t,
+ *   s_max = 2 c (R_12/R_d) (1 + sqrt(1 + a_max/c)),
+ *
+ * |w| below W = V + |r_pd| omega_max, n turns by less than V t/|r_pd| + omega_max t, and F_n/m stays below the largest
+ * -a.n + |a| turn of the collision and W^2/|r_pd|. */
 class MotionBound {
  public:
-  /*! \param peak            a_max
+  /*! \param spin            of the carrier before the collision
+   *  \param peak            a_max
    *  \param rolling         theta_crit
    *  \param carrier_radius  R_p */
-  MotionBound(const ImpulseRecord &record, double peak, double rolling, double carrier_radius);
+  MotionBound(const ImpulseRecord &record, const double *spin, double peak, double rolling, double carrier_radius);
 
   struct Bound {
     double turn;           // of n
@@ -35,17 +43,21 @@ class MotionBound {
    *  \param shell  |r_pd| */
   Bound of(const double *n, double hold, double shell) const;
 
-  /*! Whether any grain can leave that has a pull-off force per mass between these two */
-  bool any_may_leave(double least_hold, double largest_hold) const;
+  /*! Whether any grain can leave that has a pull-off force per mass between these two, and |r_pd| up to the third */
+  bool any_may_leave(double least_hold, double largest_hold, double largest_shell) const;
 
  private:
   double peak, rolling, carrier_radius;
   double time = 0.0;
   double axis[3] = {0.0, 0.0, 0.0};       // of all impulses together
   double along = 0.0, aside = 0.0;        // sums of what each has along the axis and aside of it
+  double fastest = 0.0;                   // omega_max
+  double spun = 0.0;                      // integral |alpha| dt
 
   static constexpr double MARGIN = 1.02;    // for the steps of SurfaceMotion
+  // the terms of V
   double spring(double hold, double shell) const;
+  double spin(double shell) const;
 };
 
 }    // namespace Dust

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <random>
 
@@ -20,7 +21,8 @@ using namespace Dust;
 
 namespace {
 
-constexpr double RP = 0.75e-3, RD = 10.0e-6;
+constexpr double RP = 0.75e-3, RD = 10.0e-6, SHELL = RP + RD;
+constexpr double NO_SPIN[3] = {0.0, 0.0, 0.0};
 const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9),
                           combined_modulus(75.0e9, 0.3, 210.0e9, 0.3), 0.3, 0.15};
 const double HOLD = pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / (4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0);
@@ -36,10 +38,15 @@ Vec cross(const Vec &a, const Vec &b) { return {a.y * b.z - a.z * b.y, a.z * b.x
 double size(const Vec &v) { return std::sqrt(dot(v, v)); }
 Vec along_surface(const Vec &v, const Vec &n) { return v - dot(v, n) * n; }
 
-// a collision: contact acceleration of each step
+// a collision: contact acceleration and spin of each step
 struct History {
-  std::vector<Vec> a;
+  std::vector<Vec> a, spin;
+  Vec spin0;    // before
   double dt;
+  bool smooth;    // what lifts a grain does not jump between steps
+  // at the end of a step
+  Vec a_after(size_t k) const { return 0.5 * (a[k] + a[std::min(k + 1, a.size() - 1)]); }
+  Vec spin_after(size_t k) const { return 0.5 * (spin[k] + spin[std::min(k + 1, spin.size() - 1)]); }
 };
 
 // largest F_n/F_c of a grain that is followed in forces, spin and displacement, in small steps: it leaves where this comes
@@ -49,19 +56,22 @@ double largest_load(const Grain &grain, double carrier_radius, const Material &m
   const double mass = 4.0 / 3.0 * M_PI * std::pow(grain.radius, 3) * m.density, inertia = 0.4 * mass * grain.radius * grain.radius;
   const double r12 = effective_radius(carrier_radius, grain.radius), shell = carrier_radius + grain.radius;
   const double fc = pull_off_force(m.gamma, r12), pivot = r12 * m.rolling;
-  Vec n = {grain.n[0], grain.n[1], grain.n[2]}, w, omega, xi;
+  Vec n = {grain.n[0], grain.n[1], grain.n[2]}, omega = h.spin0, w = shell * cross(omega, n), xi;
   const int substeps = 1 + static_cast<int>(4000 / h.a.size());
   const double dt = h.dt / substeps;
   double most = 0.0;
   for (size_t k = 0; k <= h.a.size(); k++) {
     const bool over = k == h.a.size();
     for (int s = 0; s < (over ? 1 : substeps); s++) {
-      const Vec a = over ? Vec() : h.a[k];
-      const double fn = mass * (dot(w, w) / shell - dot(a, n));
+      const double part = (s + 1.0) / substeps;
+      const Vec a = over ? Vec() : h.a[k], before = k == 0 || over ? a : h.a_after(k - 1);
+      const Vec felt = h.smooth && !over ? before + part * (h.a_after(k) - before) : a;
+      const double fn = mass * (dot(w, w) / shell - dot(felt, n));
       most = std::max(most, fn / fc);
       if (over) return most;
       const double stiffness = 2.0 * fc * (1.0 + std::sqrt(std::max(0.0, 1.0 - fn / fc))), limit = m.friction * std::fabs(2.0 * fc - fn);
-      const Vec slip = w - grain.radius * cross(omega, n), push = -mass * along_surface(a, n), resist = -stiffness * cross(n, xi);
+      const Vec from = k == 0 ? h.spin0 : h.spin_after(k - 1), carrier = from + part * (h.spin_after(k) - from);
+      const Vec slip = w - grain.radius * cross(omega, n) - carrier_radius * cross(carrier, n), push = -mass * along_surface(a, n), resist = -stiffness * cross(n, xi);
       // without friction the slip of the next step would be this; friction changes it by (1/m + R^2/I) f dt
       const Vec next = slip + dt / mass * push - dt * grain.radius / inertia * cross(resist, n);
       Vec f = -1.0 / (dt * (1.0 / mass + grain.radius * grain.radius / inertia)) * next;
@@ -71,11 +81,18 @@ double largest_load(const Grain &grain, double carrier_radius, const Material &m
       n = n + dt / shell * w;
       n = 1.0 / size(n) * n;
       w = along_surface(w, n);
-      xi = along_surface(xi + dt * r12 * cross(omega, n), n);
+      xi = along_surface(xi + dt * r12 * cross(omega - carrier, n), n);
       if (size(xi) > pivot) xi = pivot / size(xi) * xi;
     }
   }
   return most;
+}
+
+// a step as Collision takes it, with the spin half a step earlier
+Motion motion_of(const History &h, size_t k)
+{
+  const Vec &a = h.a[k], alpha = 1.0 / h.dt * (h.spin[k] - (k ? h.spin[k - 1] : h.spin0)), spin = h.spin[k] - 0.5 * h.dt * alpha;
+  return {{a.x, a.y, a.z}, {alpha.x, alpha.y, alpha.z}, {spin.x, spin.y, spin.z}};
 }
 
 // mode by grain, by Collision; handed over to another one every `handover` steps
@@ -85,25 +102,23 @@ std::map<int, Mode> by_collision(const DetachmentFunctions &functions, const His
   std::vector<uint64_t> attached = functions.all_attached();
   Workspace work;
   Collision collision;
-  Vec v = {1.0, 2.0, 3.0};
-  collision.begin(&v.x);
-  collision.step(functions, &v.x, 1.0, attached.data(), work);    // one before this one
-  collision.begin(&v.x);
+  const Motion earlier = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}};    // a collision before this one
+  collision.begin(Quaternion(), earlier.spin);
+  collision.step(functions, earlier, 1.0, attached.data(), work);
+  collision.begin(Quaternion(), &h.spin0.x);
   for (size_t k = 0; k <= h.a.size(); k++) {
-    if (k < h.a.size()) {
-      collision.step(functions, &h.a[k].x, h.dt, attached.data(), work);
-      v = v + h.dt * h.a[k];
-    } else
-      collision.end(functions, &v.x, attached.data(), work);
+    if (k < h.a.size())
+      collision.step(functions, motion_of(h, k), h.dt, attached.data(), work);
+    else
+      collision.end(functions, &h.spin.back().x, attached.data(), work);
     for (const Detachment &d : work.detached) left[functions.grain(d.bit)] = d.mode;
     work.detached.clear();
     if (handover && k % handover == 0) {
       std::vector<double> buf(collision.packed_size());
       collision.pack(buf.data());
       Collision other;
-      const double earlier[3] = {9.0, 9.0, 9.0};    // one that has been used
       std::vector<uint64_t> all = functions.all_attached();
-      other.begin(earlier);
+      other.begin(Quaternion(), earlier.spin);    // one that has been used
       other.step(functions, earlier, 1.0, all.data(), work);
       work.detached.clear();
       other.unpack(buf.data());
@@ -113,20 +128,34 @@ std::map<int, Mode> by_collision(const DetachmentFunctions &functions, const His
   return left;
 }
 
-// one to three pulses, each in a direction of its own
-History random_history(std::mt19937 &random)
+Vec random_direction(std::mt19937 &random)
+{
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  const double z = 2.0 * u(random) - 1.0, phi = 2.0 * M_PI * u(random), s = std::sqrt(1.0 - z * z);
+  return {s * std::cos(phi), s * std::sin(phi), z};
+}
+
+// one to three pulses, each in a direction of its own; with spins of about `spin`, what each changes the spin by, and pulses
+// that begin and end smoothly within the collision
+History random_history(std::mt19937 &random, double spin = 0.0)
 {
   const auto u = [&]() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); };
   History h;
-  const int steps = 3 + static_cast<int>(800 * u() * u());
+  h.smooth = spin > 0.0;
+  const int steps = (spin > 0.0 ? 400 : 3) + static_cast<int>(800 * u() * u());
   h.a.assign(steps, Vec());
+  if (spin > 0.0) h.spin0 = spin * random_direction(random);
+  h.spin.assign(steps, h.spin0);
   const int pulses = 1 + static_cast<int>(2.5 * u());
   for (int p = 0; p < pulses; p++) {
-    const double strength = HOLD * std::exp(3.5 * u()), middle = u() * steps, width = steps * (0.2 + u());
-    const double z = 2.0 * u() - 1.0, phi = 2.0 * M_PI * u(), s = std::sqrt(1.0 - z * z);
+    const double strength = HOLD * std::exp(3.5 * u()), part = u(), length = 0.2 + u();
+    const double middle = steps * (spin > 0.0 ? std::clamp(part, 0.25, 0.75) : part);
+    const double width = spin > 0.0 ? std::min({steps * length, middle, steps - middle}) : steps * length;
+    const Vec direction = random_direction(random), turn = spin > 0.0 ? spin * random_direction(random) : Vec();
     for (int k = 0; k < steps; k++) {
-      const double x = (k + 0.5 - middle) / width;
-      if (std::fabs(x) < 1.0) h.a[k] = h.a[k] + strength * (1.0 - x * x) * Vec{s * std::cos(phi), s * std::sin(phi), z};
+      const double x = std::clamp((k + 0.5 - middle) / width, -1.0, 1.0);
+      if (std::fabs(x) < 1.0) h.a[k] = h.a[k] + strength * std::pow(1.0 - x * x, spin > 0.0 ? 2 : 1) * direction;
+      h.spin[k] = h.spin[k] + (0.5 + 0.75 * x - 0.25 * x * x * x) * turn;
     }
   }
   h.dt = (1.0 + 6.0 * u()) * 1.0e-6 / steps;
@@ -145,7 +174,7 @@ struct Comparison {
 };
 
 // random collisions of a texture against the reference; grains whose load comes as close as `tolerance` to 1 may do either
-Comparison compare(const Texture &texture, Material m, int collisions, double tolerance)
+Comparison compare(const Texture &texture, Material m, int collisions, double tolerance, double spin = 0.0)
 {
   std::mt19937 random(3);
   Comparison found;
@@ -153,7 +182,7 @@ Comparison compare(const Texture &texture, Material m, int collisions, double to
     m.friction = i % 5 == 4 ? 0.0 : i % 5 == 3 ? 5.0 : 0.1 + 0.1 * (i % 4);
     m.rolling = i % 4 == 2 ? 0.0 : i % 2 == 1 ? 3.0 : 0.15;
     const DetachmentFunctions functions(texture, m, integrate());
-    const History h = random_history(random);
+    const History h = random_history(random, spin);
     const std::map<int, Mode> left = by_collision(functions, h);
     EXPECT_EQ(by_collision(functions, h, 17), left) << "collision " << i << " handed over";
     for (size_t k = 0; k < texture.grains.size(); k++) {
@@ -179,13 +208,13 @@ struct OnAPlane {
   OnAPlane(double friction, double rolling) : motion(friction, rolling)
   {
     const double n[3] = {0.0, 0.0, 1.0};
-    motion.add(n, HOLD, RD, CARRIER);
+    motion.add(n, HOLD, RD, CARRIER, NO_SPIN);
   }
   // the inertia force pushes with `push`
   void advance(double push, double time, int steps)
   {
     const double a[3] = {-push, 0.0, 0.0};
-    for (int k = 0; k < steps; k++) motion.advance(a, time / steps);
+    for (int k = 0; k < steps; k++) motion.advance(a, NO_SPIN, time / steps);
   }
   double w() const { return motion.velocity(0, 0); }
   double p() const { return motion.rolling_velocity(0, 0); }
@@ -215,6 +244,50 @@ TEST(SurfaceMotion, SameGrainsAsAReferenceForGrainsOfAllSizes)
   const Comparison found = compare(texture, CALCITE, 40, 0.003);
   EXPECT_GT(found.tangential, 100);
   EXPECT_GT(found.stay, 500);
+}
+
+TEST(SurfaceMotion, SameGrainsAsAReferenceOnACarrierThatTurns)
+{
+  std::mt19937 random(4);
+  int left = 0, stay = 0, close = 0;
+  for (int i = 0; i < 150; i++) {
+    Material m = CALCITE;
+    m.friction = i % 5 == 4 ? 0.0 : i % 5 == 3 ? 5.0 : 0.1 + 0.1 * (i % 4);
+    m.rolling = i % 4 == 2 ? 0.0 : i % 2 == 1 ? 3.0 : 0.15;
+    const History h = random_history(random, 0.5 * std::sqrt(HOLD / SHELL));
+    SurfaceMotion motion(m.friction, m.rolling);
+    std::vector<double> loads;
+    while (!motion.full()) {
+      const Vec n = random_direction(random);
+      const Grain grain = {{n.x, n.y, n.z}, RD * (0.5 + 0.03 * motion.grains())};
+      const double hold = HOLD * effective_radius(RP, grain.radius) / effective_radius(RP, RD) * std::pow(RD / grain.radius, 3);
+      motion.add(grain.n, hold, grain.radius, RP, &h.spin0.x);
+      loads.push_back(largest_load(grain, RP, m, h));
+    }
+    for (size_t k = 0; k < h.a.size(); k++) {
+      const Vec spin = h.spin_after(k);
+      motion.advance(&h.a[k].x, &spin.x, h.dt);
+    }
+    motion.release();
+    for (int k = 0; k < motion.grains(); k++) {
+      (motion.attached(k) ? stay : left)++;
+      if (std::fabs(loads[k] - 1.0) < 0.005) close++;
+      else EXPECT_EQ(motion.attached(k), loads[k] < 1.0) << "collision " << i << " grain " << k << " load " << loads[k];
+    }
+  }
+  EXPECT_GT(left, 1000);
+  EXPECT_GT(stay, 1000);
+  EXPECT_LT(close, 60);
+}
+
+TEST(SurfaceMotion, SameGrainsByCollisionsOfACarrierThatTurns)
+{
+  // the spans of the record are longer than steps of time
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius = RD;
+  const Comparison found = compare(texture, CALCITE, 40, 0.1, 0.5 * std::sqrt(HOLD / SHELL));
+  EXPECT_GT(found.tangential, 80);    // more lift off while they stick
+  EXPECT_GT(found.stay, 1000);
 }
 
 TEST(SurfaceMotion, WithoutFrictionAGrainKeepsItsVelocity)
@@ -254,7 +327,7 @@ TEST(SurfaceMotion, LoadOnTheContactRaisesTheLimit)
   // pressed on with g_n = -3 c: the limit is mu (2 c + 3 c)
   OnAPlane grain(0.3, 0.0);
   const double a[3] = {-40.0 * HOLD, 0.0, 3.0 * HOLD}, time = 1.0e-6;
-  for (int k = 0; k < 50; k++) grain.motion.advance(a, time / 50);
+  for (int k = 0; k < 50; k++) grain.motion.advance(a, NO_SPIN, time / 50);
   EXPECT_NEAR(grain.w(), (40.0 - 0.3 * 5.0) * HOLD * time, 1e-6);
 }
 
@@ -318,8 +391,8 @@ TEST(SurfaceMotion, AGrainLeavesWhereItsMotionOutweighsAdhesion)
   // no friction, a slow kick along the surface: it leaves at |w|^2/|r_pd| = c
   const double n[3] = {0.0, 0.0, 1.0}, a[3] = {-1.0e6, 0.0, 0.0};
   SurfaceMotion motion(0.0, 0.15);
-  motion.add(n, HOLD, RD, RP);
-  for (int k = 0; k < 4000 && motion.attached(0); k++) motion.advance(a, 5.0e-9);
+  motion.add(n, HOLD, RD, RP, NO_SPIN);
+  for (int k = 0; k < 4000 && motion.attached(0); k++) motion.advance(a, NO_SPIN, 5.0e-9);
   ASSERT_FALSE(motion.attached(0));
   double w[3], at[3];
   for (int d = 0; d < 3; d++) {
@@ -329,7 +402,7 @@ TEST(SurfaceMotion, AGrainLeavesWhereItsMotionOutweighsAdhesion)
   const double w2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], lift = w2 / (RP + RD) - a[0] * at[0];
   EXPECT_NEAR(lift, HOLD, 0.01 * HOLD);
   const double before = w[0];
-  motion.advance(a, 5.0e-9);    // gone: not moved any more
+  motion.advance(a, NO_SPIN, 5.0e-9);    // gone: not moved any more
   EXPECT_EQ(motion.velocity(0, 0), before);
 }
 
@@ -338,9 +411,9 @@ TEST(SurfaceMotion, GrainsAfterTheContactAreAskedOnceMore)
   // pressed on until the end, with a velocity that adhesion alone cannot hold
   const double n[3] = {0.0, 0.0, 1.0};
   SurfaceMotion motion(0.0, 0.15);
-  motion.add(n, HOLD, RD, RP);
+  motion.add(n, HOLD, RD, RP, NO_SPIN);
   const double a[3] = {-11.0e6, 0.0, 20.0 * HOLD};
-  for (int k = 0; k < 100; k++) motion.advance(a, 1.0e-8);
+  for (int k = 0; k < 100; k++) motion.advance(a, NO_SPIN, 1.0e-8);
   EXPECT_TRUE(motion.attached(0));
   motion.release();
   EXPECT_FALSE(motion.attached(0));
@@ -349,18 +422,109 @@ TEST(SurfaceMotion, GrainsAfterTheContactAreAskedOnceMore)
 TEST(SurfaceMotion, GrainsDoNotDependOnTheirNeighbours)
 {
   std::mt19937 random(5);
-  const History h = random_history(random);
+  const History h = random_history(random, 5.0e3);
   const Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
   SurfaceMotion together(0.3, 0.15);
-  for (int k = 0; k < SurfaceMotion::LANES; k++) together.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP);
+  for (int k = 0; k < SurfaceMotion::LANES; k++) together.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP, &h.spin0.x);
   EXPECT_TRUE(together.full());
-  for (const Vec &a : h.a) together.advance(&a.x, h.dt);
+  for (size_t k = 0; k < h.a.size(); k++) together.advance(&h.a[k].x, &h.spin[k].x, h.dt);
   for (int k = 0; k < SurfaceMotion::LANES; k++) {
     SurfaceMotion alone(0.3, 0.15);
-    alone.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP);
-    for (const Vec &a : h.a) alone.advance(&a.x, h.dt);
+    alone.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP, &h.spin0.x);
+    for (size_t i = 0; i < h.a.size(); i++) alone.advance(&h.a[i].x, &h.spin[i].x, h.dt);
     EXPECT_EQ(alone.attached(0), together.attached(k));
     for (int d = 0; d < 3; d++) EXPECT_EQ(alone.velocity(0, d), together.velocity(k, d));
+  }
+}
+
+TEST(SurfaceMotion, AGrainAtTheEquatorTurnsWithItsCarrier)
+{
+  const double n[3] = {1.0, 0.0, 0.0}, still[3] = {0.0, 0.0, 0.0}, spin[3] = {0.0, 0.0, 0.95 * std::sqrt(HOLD / SHELL)};
+  SurfaceMotion motion(0.3, 0.15);
+  motion.add(n, HOLD, RD, RP, spin);
+  const double angle = 10.0;    // rad
+  for (int k = 0; k < 10000; k++) motion.advance(still, spin, angle / spin[2] / 10000);
+  EXPECT_TRUE(motion.attached(0));
+  EXPECT_NEAR(motion.direction(0, 0), std::cos(angle), 1e-5);    // tan(angle/20000) for angle/20000, twice a step
+  EXPECT_NEAR(motion.direction(0, 1), std::sin(angle), 1e-5);
+  EXPECT_EQ(motion.direction(0, 2), 0.0);
+  const double speed = spin[2] * SHELL;
+  EXPECT_NEAR(motion.velocity(0, 0), -speed * motion.direction(0, 1), 1e-12 * speed);
+  EXPECT_NEAR(motion.velocity(0, 1), speed * motion.direction(0, 0), 1e-12 * speed);
+  EXPECT_NEAR(motion.rolling_velocity(0, 1), spin[2] * RD * motion.direction(0, 0), 1e-12 * speed);
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(motion.rolling_angle(0, d), 0.0, 1e-14);
+}
+
+TEST(SurfaceMotion, AwayFromTheEquatorItRocksAboutWhereTheCentrifugalForceHoldsIt)
+{
+  // without slip (7/5) v' = T - s psi, T = |r_pd| omega^2 sin cos: after half a period psi = 2 T/s
+  const double spin[3] = {0.0, 0.0, 1.0e3}, n[3] = {std::sqrt(0.5), 0.0, std::sqrt(0.5)}, still[3] = {0.0, 0.0, 0.0};
+  const double push = 0.5 * SHELL * spin[2] * spin[2], s = 4.0 * HOLD * RP / SHELL;
+  SurfaceMotion motion(0.3, 0.15);
+  motion.add(n, HOLD, RD, RP, spin);
+  for (int k = 0; k < 400; k++) motion.advance(still, spin, M_PI * std::sqrt(7.0 * RD / (5.0 * s)) / 400);
+  const Vec psi = {motion.rolling_angle(0, 0), motion.rolling_angle(0, 1), motion.rolling_angle(0, 2)};
+  EXPECT_NEAR(size(psi), 2.0 * push / s, 0.005 * push / s);
+  EXPECT_LT(psi.z, 0.0);    // to the equator
+}
+
+TEST(SurfaceMotion, WithoutFrictionAGrainLeavesTheTurningCarrierBehind)
+{
+  // on a great circle, with the velocity it had
+  const double spin[3] = {0.0, 0.0, 5.0e3}, n[3] = {std::sqrt(0.5), 0.0, std::sqrt(0.5)}, still[3] = {0.0, 0.0, 0.0};
+  SurfaceMotion motion(0.0, 0.0);
+  motion.add(n, HOLD, RD, RP, spin);
+  const double angle = 0.3;
+  for (int k = 0; k < 1000; k++) motion.advance(still, spin, angle / (spin[2] * std::sqrt(0.5)) / 1000);
+  EXPECT_NEAR(motion.direction(0, 0), std::sqrt(0.5) * std::cos(angle), 1e-4);
+  EXPECT_NEAR(motion.direction(0, 1), std::sin(angle), 1e-4);
+  EXPECT_NEAR(motion.direction(0, 2), std::sqrt(0.5) * std::cos(angle), 1e-4);
+  const double speed = spin[2] * SHELL * std::sqrt(0.5);
+  EXPECT_NEAR(motion.velocity(0, 1), speed * std::cos(angle), 2e-4 * speed);
+}
+
+TEST(SurfaceMotion, ACarrierSpunUpThrowsGrainsOffItsEquatorOnly)
+{
+  // slowly enough that they follow
+  const double equator[3] = {0.0, 1.0, 0.0}, axis[3] = {0.0, 0.0, -1.0}, still[3] = {0.0, 0.0, 0.0};
+  for (double share : {0.995, 1.005}) {
+    SurfaceMotion motion(0.3, 0.15);
+    motion.add(equator, HOLD, RD, RP, still);
+    motion.add(axis, HOLD, RD, RP, still);
+    const int steps = 40000;
+    for (int k = 1; k <= steps; k++) {
+      const double spin[3] = {0.0, 0.0, share * std::sqrt(HOLD / SHELL) * k / steps};
+      motion.advance(still, spin, 1.0e-3 / steps);
+    }
+    motion.release();
+    EXPECT_EQ(motion.attached(0), share < 1.0);
+    EXPECT_TRUE(motion.attached(1));
+    EXPECT_EQ(motion.velocity(1, 0), 0.0);
+  }
+}
+
+TEST(SurfaceMotion, DoesNotDependOnTheAxes)
+{
+  std::mt19937 random(8);
+  const auto turned = [](const Vec &v) { return Vec{0.36 * v.x + 0.48 * v.y - 0.8 * v.z, -0.8 * v.x + 0.6 * v.y, 0.48 * v.x + 0.64 * v.y + 0.6 * v.z}; };
+  for (int i = 0; i < 20; i++) {
+    const History h = random_history(random, 5.0e3);
+    SurfaceMotion one(0.3, 0.15), other(0.3, 0.15);
+    while (!one.full()) {
+      const Vec n = random_direction(random), m = turned(n), spin = turned(h.spin0);
+      one.add(&n.x, HOLD, RD, RP, &h.spin0.x);
+      other.add(&m.x, HOLD, RD, RP, &spin.x);
+    }
+    for (size_t k = 0; k < h.a.size(); k++) {
+      const Vec a = turned(h.a[k]), spin = turned(h.spin[k]);
+      one.advance(&h.a[k].x, &h.spin[k].x, h.dt);
+      other.advance(&a.x, &spin.x, h.dt);
+    }
+    for (int k = 0; k < one.grains(); k++) {
+      EXPECT_EQ(one.attached(k), other.attached(k));
+      const Vec v = turned({one.velocity(k, 0), one.velocity(k, 1), one.velocity(k, 2)});
+      EXPECT_NEAR(size(v - Vec{other.velocity(k, 0), other.velocity(k, 1), other.velocity(k, 2)}), 0.0, 1e-10);
+    }
   }
 }
 
@@ -370,22 +534,31 @@ TEST(ImpulseRecord, KeepsSumsInBoundedMemory)
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (int steps : {1, 63, 64, 65, 128, 129, 1000, 5000}) {
     ImpulseRecord record;
-    Vec sum;
+    Vec impulse, turn;
     double time = 0.0;
     for (int k = 0; k < steps; k++) {
-      const Vec a = {u(random), u(random), u(random)};
+      const Vec a = {u(random), u(random), u(random)}, spin = {u(random), u(random), u(random)};
       const double dt = 1.0 + 0.5 * u(random);
-      record.add(&a.x, dt);
-      sum = sum + dt * a;
+      record.add(&a.x, &spin.x, dt);
+      impulse = impulse + dt * a;
+      turn = turn + dt * spin;
       time += dt;
       ASSERT_LE(record.spans().size(), size_t(ImpulseRecord::MOST));
     }
     EXPECT_GE(record.spans().size(), size_t(std::min(steps, ImpulseRecord::MOST / 2)));
+    std::vector<double> buf(record.packed_size());
+    record.pack(buf.data());
+    ImpulseRecord other;
+    other.unpack(buf.data(), buf.size());
+    ASSERT_EQ(other.spans().size(), record.spans().size());
+    EXPECT_EQ(std::memcmp(other.spans().data(), record.spans().data(), record.spans().size() * sizeof(ImpulseRecord::Span)), 0);
     for (const auto &span : record.spans()) {
-      sum = sum - Vec{span.impulse[0], span.impulse[1], span.impulse[2]};
+      impulse = impulse - Vec{span.impulse[0], span.impulse[1], span.impulse[2]};
+      turn = turn - Vec{span.turn[0], span.turn[1], span.turn[2]};
       time -= span.duration;
     }
-    EXPECT_NEAR(size(sum), 0.0, 1e-9);
+    EXPECT_NEAR(size(impulse), 0.0, 1e-9);
+    EXPECT_NEAR(size(turn), 0.0, 1e-9);
     EXPECT_NEAR(time, 0.0, 1e-9);
   }
 }
@@ -403,14 +576,13 @@ TEST(ImpulseRecord, IsKeptForIntegrateOnly)
     std::vector<uint64_t> attached = functions.all_attached();
     Workspace work;
     Collision collision;
-    const Vec v;
-    collision.begin(&v.x);
-    for (const Vec &a : h.a) collision.step(functions, &a.x, h.dt, attached.data(), work);
+    collision.begin(Quaternion(), NO_SPIN);
+    for (size_t k = 0; k < h.a.size(); k++) collision.step(functions, motion_of(h, k), h.dt, attached.data(), work);
     sizes[tangential] = collision.packed_size();
   }
   EXPECT_EQ(sizes[Criteria::OFF], sizes[Criteria::ESTIMATE]);
   EXPECT_EQ(sizes[Criteria::FRICTIONLESS], sizes[Criteria::ESTIMATE]);
-  EXPECT_GT(sizes[Criteria::INTEGRATE], sizes[Criteria::ESTIMATE] + 4 * ImpulseRecord::MOST / 2);
+  EXPECT_GT(sizes[Criteria::INTEGRATE], sizes[Criteria::ESTIMATE] + 7 * ImpulseRecord::MOST / 2);
 }
 
 TEST(MotionBound, HoldsForWhatMovesMostAndSparesWhatDoesNot)
@@ -421,15 +593,66 @@ TEST(MotionBound, HoldsForWhatMovesMostAndSparesWhatDoesNot)
     const double time = 3.0e-6, peak = 0.5 * M_PI * speed / time;
     for (int k = 0; k < 300; k++) {
       const double a[3] = {0.0, 0.0, peak * std::sin(M_PI * (k + 0.5) / 300)};
-      record.add(a, time / 300);
+      record.add(a, NO_SPIN, time / 300);
     }
-    return MotionBound(record, peak, 0.15, RP);
+    return MotionBound(record, NO_SPIN, peak, 0.15, RP);
   };
   const double equator[3] = {1.0, 0.0, 0.0}, pole[3] = {0.0, 0.0, 1.0}, needed = std::sqrt(HOLD * (RP + RD));
   EXPECT_GT(bound(1.001 * needed).of(equator, HOLD, RP + RD).centrifugal, HOLD);    // frictionless
   EXPECT_LT(bound(1.5 * needed).of(pole, HOLD, RP + RD).centrifugal, 0.2 * HOLD);
   EXPECT_LT(bound(0.5 * needed).of(equator, HOLD, RP + RD).centrifugal, 0.5 * HOLD);
   EXPECT_GT(bound(0.5 * needed).of(equator, HOLD, RP + RD).turn, 0.5 * needed * 3.0e-6 / (RP + RD));
-  EXPECT_TRUE(bound(0.5 * needed).any_may_leave(HOLD, HOLD));
-  EXPECT_FALSE(bound(0.01 * needed).any_may_leave(HOLD, HOLD));
+  EXPECT_TRUE(bound(0.5 * needed).any_may_leave(HOLD, HOLD, SHELL));
+  EXPECT_FALSE(bound(0.01 * needed).any_may_leave(HOLD, HOLD, SHELL));
+}
+
+TEST(MotionBound, NeverSparesAGrainThatIsThrownOff)
+{
+  std::mt19937 random(9);
+  int thrown = 0, spared = 0, collisions = 0;
+  for (int i = 0; i < 2500; i++) {
+    History h = random_history(random, i % 5 == 0 ? 0.0 : 4.0e3);
+    if (h.a.size() < 32) continue;    // Collision takes smaller steps
+    const double weaker = std::exp(-3.0 * std::uniform_real_distribution<double>()(random));
+    for (Vec &a : h.a) a = weaker * a;
+    collisions++;
+    ImpulseRecord record;
+    double peak = 0.0;
+    for (size_t k = 0; k < h.a.size(); k++) {
+      record.add(&h.a[k].x, &h.spin[k].x, h.dt);
+      peak = std::max(peak, size(h.a[k]));
+    }
+    const double rolling = i % 3 == 0 ? 3.0 : 0.15;
+    const MotionBound bound(record, &h.spin0.x, peak, rolling, RP);
+    SurfaceMotion motion(i % 7 == 0 ? 0.0 : 0.3, rolling);
+    std::vector<bool> stays;
+    while (!motion.full()) {
+      const Vec n = random_direction(random);
+      const double radius = RD * (1.0 + 0.1 * (motion.grains() % 5)), hold = HOLD * RD * RD / (radius * radius);
+      motion.add(&n.x, hold, radius, RP, &h.spin0.x);
+      const auto [turn, centrifugal] = bound.of(&n.x, hold, RP + radius);
+      bool holds = centrifugal <= hold;    // after the end
+      for (const Vec &a : h.a) holds &= turn * size(a) - dot(a, n) + centrifugal <= hold;
+      stays.push_back(holds);
+      if (!bound.any_may_leave(hold, hold, RP + radius)) {
+        EXPECT_TRUE(holds);
+      }
+    }
+    for (const ImpulseRecord::Span &span : record.spans()) {
+      const double t = span.duration, *j = span.impulse, a[3] = {j[0] / t, j[1] / t, j[2] / t};
+      const double spin[3] = {span.turn[0] / t, span.turn[1] / t, span.turn[2] / t};
+      motion.advance(a, spin, t);
+    }
+    motion.release();
+    for (int k = 0; k < motion.grains(); k++) {
+      thrown += !motion.attached(k);
+      spared += stays[k];
+      if (stays[k]) {
+        EXPECT_TRUE(motion.attached(k)) << "collision " << i << " grain " << k;
+      }
+    }
+  }
+  EXPECT_GT(collisions, 2000);
+  EXPECT_GT(thrown, 2000);
+  EXPECT_GT(spared, 10000);
 }

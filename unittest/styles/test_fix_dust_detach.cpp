@@ -468,8 +468,17 @@ TEST(FixDustDetach, WrongInputIsNamed)
   names(ok + "rolling", "rolling");
   names(ok + "criteria all", "all");
   names(ok + "every 0", "every");
-  for (const char *later : {"rotation yes", "mass yes", "orientation random", "emit 2", "stiffen 10"})
-    names(ok + later, std::string(later).substr(0, 6));
+  names(ok + "rotation maybe", "maybe");
+  names(ok + "mass 3.5", "3.5");
+  names(ok + "orientation random", "orientation");
+  names(ok + "orientation random 0", "seed 0");
+  names(ok + "orientation up", "up");
+  names(ok + "stiffen 0.1", "stiffen value 0.1");
+  names(ok + "stiffen", "stiffen");
+  names(ok + "emit 3", "emit value 3");
+  names(ok + "emit some", "emit value some");
+  names(ok + "emit 2 mass no", "mass");
+  names(ok + "emit 2", "group");
 
   EXPECT_NE(error(ok, false).find("no carriers"), std::string::npos);
   Deck points;
