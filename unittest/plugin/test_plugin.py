@@ -152,7 +152,8 @@ def test_decks_give_the_same_numbers_in_both(tmp_path, deck):
             [word for i, word in enumerate(row.split()) if i not in times] for row in thermo(result.stdout)
         ]
         files = {file.name: file.read_bytes() for file in sorted(folder.iterdir())}
-        last_words = [line for line in result.stdout.splitlines() if re.match("dispersion ratio|carrier|grains off", line)]
+        lines = result.stdout.splitlines()
+        last_words = [line for line in lines if re.match("dispersion ratio|carrier|grains off", line)]
         produced.append((rows, last_words, files))
     assert len(produced[0][0]) > 1
     assert "state" in produced[0][2]
@@ -188,7 +189,7 @@ SIZES = "-var grain_diameter 15e-6 -var sigma_g 1.5 -var bare 0.4 -var coverage 
 
 
 def test_resolved_impact_with_many_sizes_and_spin(tmp_path):
-    """Classes by size, each with contacts of its own; friction slows the spin by 5/(2 R) of the speed along the wall it gives."""
+    """Classes by size, each with contacts of its own; friction takes 5/(2 R) of the spin for the speed it gives."""
     command = [LMP_DUST, "-in", ROOT / "lammps-inputs/in.impact.resolved", "-log", "none", *SIZES.split()]
     command += ["-var", "spin", "4000", "-var", "wall_friction", "0.3"]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
