@@ -171,6 +171,7 @@ def test_decks_give_the_same_numbers_in_both(tmp_path, deck):
             ("offset", "1", "below 1"),
             ("offset", "-0.1", "at least 0"),
             ("sigma_g", "0.9", "1"),
+            ("grain_contacts", "maybe", "yes or no"),
             ("timestep", "0", "above 0"),
             ("limit", "0", "above 0"),
         )
