@@ -86,6 +86,7 @@ void FixDustDetach::parse(int narg, char **arg)
 {
   friction = strcmp(update->unit_style, "si") == 0 ? 0.3 : -1.0;    // the reference case, as in DustOptions
   rolling = 0.15;
+  damping = -1.0;    // quasi-static
   every = 1;
   keep_rows = rotation = true;
   stiffen_acceleration = stiffen_time = 1.0;
@@ -101,15 +102,18 @@ void FixDustDetach::parse(int narg, char **arg)
       continue;
     }
     const std::string key = arg[iarg];
-    if (key != "friction" && key != "rolling" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" &&
+    if (key != "friction" && key != "rolling" && key != "damping" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" &&
         key != "rotation" && key != "stiffen" && key != "mass" && key != "emit")
       error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
-                 "friction, rolling, tangential, criteria, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
+                 "friction, rolling, damping, tangential, criteria, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {
       friction = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, friction >= 0.0 && std::isfinite(friction), "at least 0");
+    } else if (key == "damping") {
+      damping = options.number(iarg, 1, arg);
+      options.check(iarg, 1, arg, damping >= 0.0 && std::isfinite(damping), "at least 0");
     } else if (key == "rolling") {
       rolling = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, rolling >= 0.0 && std::isfinite(rolling), "at least 0 (rad)");
@@ -157,6 +161,7 @@ void FixDustDetach::parse(int narg, char **arg)
   if (emit && igroup == 0)
     error->all(FLERR, "Fix dust/detach emit {} needs a group of carriers without the emitted grains, not group all", emit);
   if (emit) lose_mass = true;
+  work.locate = keep_rows || lose_mass;
 }
 
 /* ----------------------------------------------------------------------
@@ -166,7 +171,7 @@ void FixDustDetach::parse(int narg, char **arg)
 void FixDustDetach::build()
 {
   texture = options.texture(carrier_radius);
-  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling};
+  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling, damping};
   functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, criteria);
 
   // a number that tells this texture from another one in a restart file
@@ -295,7 +300,7 @@ void FixDustDetach::adopt()
     std::copy(functions->all_attached().begin(), functions->all_attached().end(), attached[i]);
     array_atom[i][ATTACHED] = functions->grains();
     mine.initial += functions->grains();
-    if (orientation) std::copy_n(options.orientation(atom->tag[i]).q, 4, orientation[i]);
+    if (orientation) orientation[i] = options.orientation(atom->tag[i]);
     if (lose_mass) atom->rmass[i] += functions->grains() * functions->mean_mass();
   }
 }
@@ -317,7 +322,7 @@ void FixDustDetach::post_force(int /*vflag*/)
     const bool touches = (bits[0] | bits[1] | bits[2]) << 1;
     if (!rotation && !touches && state[i] <= FREE_FLIGHT) continue;
     if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
-    if (rotation) turn(i);
+    if (rotation) orientation[i].turn_by(atom->omega[i], update->dt);    // from the step before to this one
     if (touches)
       collide(i);
     else if (state[i] >= 0)
@@ -355,23 +360,6 @@ Dust::Motion FixDustDetach::motion_of(int i) const
 
 /* ---------------------------------------------------------------------- */
 
-Dust::Quaternion FixDustDetach::orientation_of(int i) const
-{
-  Dust::Quaternion q;
-  if (orientation) std::copy_n(orientation[i], 4, q.q);
-  return q;
-}
-
-// from the step before to this one
-void FixDustDetach::turn(int i)
-{
-  Dust::Quaternion q = orientation_of(i);
-  q.turn_by(atom->omega[i], update->dt);
-  std::copy_n(q.q, 4, orientation[i]);
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixDustDetach::collide(int i)
 {
   const Dust::Motion motion = motion_of(i);
@@ -388,7 +376,7 @@ void FixDustDetach::collide(int i)
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
   state[i] = start_collision();
-  collisions[state[i]].begin(orientation_of(i), motion.spin);
+  collisions[state[i]].begin(orientation ? orientation[i] : Dust::Quaternion(), motion.spin);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -471,7 +459,7 @@ void FixDustDetach::record(int i)
   for (const Dust::Detachment &d : work.detached) {
     mine.modes[d.mode] += 1.0;
     lost += functions->weight(d.bit);
-    if (!keep_rows && !lose_mass) continue;
+    if (!work.locate) continue;
     const int number = functions->grain(d.bit);
     const Dust::Grain &grain = texture.grains[number];
     const double distance = carrier_radius + grain.radius, *n = d.direction, *w = d.velocity;
@@ -764,7 +752,7 @@ void FixDustDetach::grow_arrays(int nmax)
   memory->grow(state, nmax, "dust/detach:state");
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
   memory->grow(array_atom, nmax, NCOLUMNS, "dust/detach:array_atom");
-  if (orientation_size()) memory->grow(orientation, nmax, orientation_size(), "dust/detach:orientation");
+  if (oriented()) memory->grow(orientation, nmax, "dust/detach:orientation");
   if (functions) memory->grow(attached, nmax, functions->words(), "dust/detach:attached");
 }
 
@@ -775,7 +763,7 @@ void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
   state[j] = state[i];
   window_mass[j] = window_mass[i];
   std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), array_atom[j]);
-  std::copy_n(orientation ? orientation[i] : nullptr, orientation_size(), orientation ? orientation[j] : nullptr);
+  if (orientation) orientation[j] = orientation[i];
   if (functions) std::copy_n(attached[i], functions->words(), attached[j]);
 }
 
@@ -798,10 +786,14 @@ int FixDustDetach::fixed_size() const
   return 2 + NCOLUMNS + 1 + orientation_size() + (functions ? functions->words() : 0);
 }
 
-// numbers of a quaternion, if there is one
+bool FixDustDetach::oriented() const
+{
+  return rotation || !options.same_orientation();
+}
+
 int FixDustDetach::orientation_size() const
 {
-  return rotation || !options.same_orientation() ? 4 : 0;
+  return oriented() ? 4 : 0;
 }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
@@ -829,7 +821,7 @@ int FixDustDetach::pack(int i, double *buf) const
   *p++ = state[i] >= 0 ? 0 : state[i];
   p = std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), p);
   *p++ = window_mass[i];
-  if (orientation) p = std::copy_n(orientation[i], 4, p);
+  if (orientation) p = std::copy_n(orientation[i].q, 4, p);
   std::memcpy(p, attached[i], words * sizeof(uint64_t));
   p += words;
   if (state[i] >= 0) {
@@ -852,7 +844,7 @@ void FixDustDetach::unpack(int i, const double *buf)
   p += NCOLUMNS;
   window_mass[i] = *p++;
   open_windows = 2;
-  if (orientation) std::copy_n(p, 4, orientation[i]);
+  if (orientation) std::copy_n(p, 4, orientation[i].q);
   p += orientation_size();
   std::memcpy(attached[i], p, words * sizeof(uint64_t));
   p += words;

@@ -56,7 +56,7 @@ class FixDustDetach : public Fix {
   // what the input asks for
   DustOptions options;
   Dust::Criteria criteria;
-  double friction, rolling;
+  double friction, rolling, damping;
   int every;
   bool keep_rows, rotation;
   double stiffen_acceleration, stiffen_time;    // what softened contacts give, times these, is what stiff ones would
@@ -76,7 +76,7 @@ class FixDustDetach : public Fix {
   enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: index of the collision
   int *state;
   uint64_t **attached;
-  double **orientation;    // quaternion, if it is not the same for all carriers for ever
+  Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever
   double *window_mass;    // lost in the window that is not complete yet
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
   bool newcomers;         // atoms were added that may be carriers
@@ -88,8 +88,6 @@ class FixDustDetach : public Fix {
   int start_collision();
   void drop_lost_collisions();
   Dust::Motion motion_of(int) const;
-  Dust::Quaternion orientation_of(int) const;
-  void turn(int);
   void collide(int);
   void begin_collision(int, const Dust::Motion &);
   void finish_collision(int, int);
@@ -138,6 +136,7 @@ class FixDustDetach : public Fix {
   int room;    // for a collision in what a carrier takes along when it changes ranks
   void make_room(int);
   int fixed_size() const;
+  bool oriented() const;
   int orientation_size() const;
   int packed_size(int) const;
   int pack(int, double *) const;

@@ -28,6 +28,7 @@ void AccelerationHistory::clear()
 {
   motions.clear();
   levels.clear();
+  in_tree = 0;
   largest = 0;
   size2_of_peak = 0.0;
 }
@@ -52,11 +53,11 @@ void AccelerationHistory::add(const Motion &motion, double size2)
     while (n && covers(motion, size2, motions[n - 1])) n--;
   motions.resize(n);
   motions.push_back(motion);
+  in_tree = std::min(in_tree, n);
   if (size2 > size2_of_peak || largest >= n) {
     largest = n;
     size2_of_peak = size2;
   }
-  update_tree();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -69,15 +70,17 @@ AccelerationHistory::Sphere AccelerationHistory::member(size_t level, size_t i) 
   return {{a[0], a[1], a[2]}, 0.0, m.turning()};
 }
 
-void AccelerationHistory::update_tree()
+void AccelerationHistory::update_tree() const
 {
-  // the last motion may be replaced by the next one and is in no sphere; others never change but by being dropped
-  size_t whole = motions.size() - 1;
+  if (in_tree == motions.size()) return;
+  size_t whole = motions.size(), kept = in_tree;
+  in_tree = motions.size();
   for (size_t level = 0; whole >= BRANCH || level < levels.size(); level++) {
     whole /= BRANCH;
+    kept /= BRANCH;
     if (level == levels.size()) levels.emplace_back();
     std::vector<Sphere> &spheres = levels[level];
-    if (spheres.size() > whole) spheres.resize(whole);
+    if (spheres.size() > kept) spheres.resize(kept);
     while (spheres.size() < whole) {
       const size_t first = spheres.size() * BRANCH;
       Sphere s = {};
@@ -126,5 +129,4 @@ void AccelerationHistory::assign(const Motion *first, size_t count)
       size2_of_peak = size2;
     }
   }
-  if (count) update_tree();
 }

@@ -58,17 +58,20 @@ class AccelerationHistory {
     double turning;    // largest |alpha| + omega^2
   };
   std::vector<Motion> motions;
-  std::vector<std::vector<Sphere>> levels;     // each of BRANCH of the level below, the first of BRANCH motions
+  // each of BRANCH of the level below, the first of BRANCH motions; brought up to date when a question is asked
+  mutable std::vector<std::vector<Sphere>> levels;
+  mutable size_t in_tree = 0;    // the first motions: as they were when the tree was last up to date
   size_t largest = 0;
   double size2_of_peak = 0.0;
 
   Sphere member(size_t level, size_t i) const;
-  void update_tree();
+  void update_tree() const;
   size_t count(size_t level) const { return level < levels.size() ? levels[level].size() : 0; }
 
   // calls visit(motion) for all motions of spheres that may hold what is sought, until it returns true
   template <typename May, typename Visit> bool search(May may, Visit visit) const
   {
+    update_tree();
     // what is in no sphere of the next level yet
     for (size_t i = count(0) * BRANCH; i < motions.size(); i++)
       if (visit(i)) return true;

@@ -7,6 +7,7 @@
 #include "geometry.h"
 #include "jkr.h"
 #include "motion_bound.h"
+#include "normal_motion.h"
 #include "surface_motion.h"
 
 #include <algorithm>
@@ -58,7 +59,8 @@ template <typename Visit> void each_bit(uint64_t word, Visit visit)
 /* ---------------------------------------------------------------------- */
 
 DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria) :
-    criteria(criteria), friction(material.friction), rolling(material.rolling), carrier_radius(texture.carrier_radius),
+    criteria(criteria), friction(material.friction), rolling(material.rolling), damping(material.damping),
+    carrier_radius(texture.carrier_radius),
     sites(texture.grains.size())
 {
   const int n = grains();
@@ -93,20 +95,30 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
     reach = std::max(reach, site.shell);
     slow2 = std::min(slow2, site.hold * site.shell);
   }
-  // largest g_t + mu_f g_n of a given |g| against 2 mu_f c. Without friction grains roll at some force, too; and all
-  // leave that feel c.
-  moving = least * std::clamp(2.0 * friction / std::sqrt(1.0 + friction * friction), 0.1, 1.0);
+  // g_t + slope g_n of a given |g| is at most sqrt(1 + slope^2) |g|
+  for (Mode mode : {SLIDING, ROLLING}) {
+    least_to[mode] = INF;
+    for (const Site &site : sites) {
+      const auto [factor, slope] = limit(mode, site.lever);
+      least_to[mode] = std::min(least_to[mode], factor * slope / std::sqrt(1.0 + slope * slope) * site.hold);
+    }
+  }
+  // all leave that feel c; without friction they roll at some force, too
+  moving = std::clamp(least_to[SLIDING], 0.1 * least, least);
+  if (criteria.ibrahim) moving = std::min({least_to[SLIDING], least_to[ROLLING], least});
 
   patches.resize(words());
   for (int p = 0; p < words(); p++) {
     Patch &patch = patches[p];
-    patch = {{0.0, 0.0, 0.0}, 0.0, INF, 0.0, 0.0};
+    patch = {{0.0, 0.0, 0.0}, 0.0, INF, 0.0, INF, 0.0, INF};
     const auto site_at = [&](int k) -> const Site & { return sites[p * PATCH + k]; };
     each_bit(all[p], [&](int k) {
       const Site &site = site_at(k);
       for (int d = 0; d < 3; d++) patch.centre[d] += site.n[d];
       patch.least_hold = std::min(patch.least_hold, site.hold);
       patch.largest_hold = std::max(patch.largest_hold, site.hold);
+      patch.least_shell = std::min(patch.least_shell, site.shell);
+      patch.least_lever = std::min(patch.least_lever, site.lever);
       patch.largest_lever = std::max(patch.largest_lever, site.lever);
     });
     const double size = std::sqrt(dot(patch.centre, patch.centre));
@@ -123,9 +135,11 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
 
 bool DetachmentFunctions::may_move(const Motion &m) const
 {
-  const double a2 = dot(m.acceleration, m.acceleration);
-  if (!m.turns()) return a2 > moving * moving;
-  return std::sqrt(a2) + reach * m.turning() > moving;
+  const double a2 = dot(m.acceleration, m.acceleration), spin2 = dot(m.spin, m.spin);
+  const double alpha2 = dot(m.angular_acceleration, m.angular_acceleration), moving2 = moving * moving;
+  // (x + y + z)^2 <= 3 (x^2 + y^2 + z^2): no root for what rests or nearly so
+  if (3.0 * (a2 + reach * reach * (alpha2 + spin2 * spin2)) <= moving2) return false;
+  return std::sqrt(a2) + reach * (std::sqrt(alpha2) + spin2) > moving;
 }
 
 /* ----------------------------------------------------------------------
@@ -135,25 +149,32 @@ bool DetachmentFunctions::may_move(const Motion &m) const
 double DetachmentFunctions::excess(Mode mode, int bit, const Motion &motion) const
 {
   const Site &site = sites[bit];
-  double g[3];
-  motion.inertia(site.n, site.shell, g);
-  const double gn = dot(g, site.n);
-  const double t[3] = {g[0] - gn * site.n[0], g[1] - gn * site.n[1], g[2] - gn * site.n[2]};
+  const double *a = motion.acceleration;
+  double g[3] = {-a[0], -a[1], -a[2]};
+  if (motion.turns()) motion.inertia(site.n, site.shell, g);
+  const double gn = dot(g, site.n), gt2 = dot(g, g) - gn * gn;
   const auto [factor, slope] = limit(mode, site.lever);
-  return std::sqrt(dot(t, t)) - slope * std::fabs(factor * site.hold - gn);
+  return std::sqrt(std::max(0.0, gt2)) - slope * std::fabs(factor * site.hold - gn);
 }
 
-// from the value at the centre: a chord r changes g_n and g_t by at most |g| r, turning by at most what it adds to g
-bool DetachmentFunctions::all_exceed(Mode mode, int p, const Motion &motion) const
+// from the value at the centre: a chord r changes g by at most |r_pd| (|alpha| + 3 omega^2) r, g_n and g_t by |g| r more
+DetachmentFunctions::Range DetachmentFunctions::excess_in_patch(Mode mode, int p, const Motion &motion) const
 {
   const Patch &patch = patches[p];
-  const double *a = motion.acceleration, *n = patch.centre;
-  const double gn = -dot(a, n), size2 = dot(a, a), gt = std::sqrt(std::max(0.0, size2 - gn * gn));
-  const auto [factor, slope] = limit(mode, patch.largest_lever);
-  const double off = std::max(std::fabs(factor * patch.least_hold - gn), std::fabs(factor * patch.largest_hold - gn));
-  const double change = std::sqrt(size2) * patch.radius + reach * motion.turning();
+  const double *a = motion.acceleration;
+  double g[3] = {-a[0], -a[1], -a[2]}, turned = 0.0;
+  if (motion.turns()) {
+    motion.inertia(patch.centre, reach, g);
+    turned = (3.0 * reach * patch.radius + reach - patch.least_shell) * motion.turning();
+  }
+  const double gn = dot(g, patch.centre), size2 = dot(g, g), gt = std::sqrt(std::max(0.0, size2 - gn * gn));
+  const double change = std::sqrt(size2) * patch.radius + turned;
+  const Limit most = limit(mode, patch.largest_lever), least = limit(mode, patch.least_lever);
+  const double below = most.factor * patch.least_hold - gn, above = most.factor * patch.largest_hold - gn;
+  const double far = std::max(std::fabs(below), std::fabs(above)), close = std::max({0.0, below, -above});
   constexpr double ROUND_OFF = 1.0e-9;
-  return gt - slope * off > (1.0 + slope) * change + ROUND_OFF * (gt + slope * off);
+  const double margin = (1.0 + most.slope) * change + ROUND_OFF * (gt + most.slope * far);
+  return {gt - most.slope * far - margin, gt - least.slope * close + margin};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -176,7 +197,8 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &in_space, doub
 {
   Course &c = course;
   Motion m = {};
-  c.frame.to_body(in_space.acceleration, m.acceleration);
+  if (c.frame.is_none()) std::copy_n(in_space.acceleration, 3, m.acceleration);
+  else c.frame.to_body(in_space.acceleration, m.acceleration);
   for (int d = 0; d < 3; d++) c.impulse[d] += m.acceleration[d] * dt;
   const bool turns = in_space.turns();
   if (turns) {
@@ -206,7 +228,7 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &in_space, doub
   }
 
   Split s = {INF, INF};
-  if (!history.empty() && size2 <= history.peak2()) {
+  if (!history.empty() && size2 <= history.peak2() && (!turns || most > df.least)) {
     const Motion &peak = history.peak();
     s = split(m.acceleration, peak.acceleration, history.peak2());
     if (!turns && !peak.turns() && is_between(s, history.peak2())) return false;
@@ -335,29 +357,31 @@ void Collision::check_all(const DetachmentFunctions &df, const Motion &motion, u
 }
 
 /* ----------------------------------------------------------------------
-   at a motion which the history does not have yet
+   at a motion, `now`, which the history does not have yet; or along the surface
 ------------------------------------------------------------------------- */
 
 void Collision::leave_place(const DetachmentFunctions &df, int bit, Mode mode, const Motion &motion, uint64_t *attached,
                             Workspace &work)
 {
-  for (Mode met : {SLIDING, ROLLING})
-    if (df.excess(met, bit, motion) > 0.0 && !has_met(met, df, bit)) course.count[met] += 1.0;
   const auto &site = df.sites[bit];
-  double direction[3], spin[3], velocity[3];
-  course.turn.to_space(site.n, direction);
-  course.turn.to_space(motion.spin, spin);
-  cross(spin, direction, velocity);
-  for (double &x : velocity) x *= site.shell;
-  leave(df, bit, mode, direction, velocity, attached, work);
+  double direction[3] = {}, spin[3], velocity[3] = {};
+  if (work.locate) {
+    course.turn.to_space(site.n, direction);
+    course.turn.to_space(motion.spin, spin);
+    cross(spin, direction, velocity);
+    for (double &x : velocity) x *= site.shell;
+  }
+  leave(df, bit, mode, direction, velocity, &motion, attached, work);
 }
 
 void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const double *direction, const double *velocity,
-                      uint64_t *attached, Workspace &work)
+                      const Motion *now, uint64_t *attached, Workspace &work)
 {
   attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
-  for (Mode met : {SLIDING, ROLLING}) course.count[met] += has_met(met, df, bit);
+  for (Mode met : {SLIDING, ROLLING})
+    course.count[met] += (now && df.excess(met, bit, *now) > 0.0) || has_met(met, df, bit);
   work.detached.push_back({bit, mode, {}, {}});
+  if (!work.locate) return;
   course.frame.to_space(direction, work.detached.back().direction);
   course.frame.to_space(velocity, work.detached.back().velocity);
 }
@@ -373,12 +397,20 @@ bool Collision::has_met(Mode mode, const DetachmentFunctions &df, int bit) const
 int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint64_t *attached) const
 {
   int n = static_cast<int>(course.count[mode]);
-  if (history.empty() || (mode == SLIDING && course.most <= df.moving && df.friction > 0.0)) return n;
-  for (int p = 0; p < df.words(); p++)
-    if (attached[p] && df.all_exceed(mode, p, history.peak()))
+  if (course.most <= df.least_to[mode]) return n;
+  const Motion &peak = history.peak();
+  const bool weak = course.most <= df.moving;    // most contacts of a bed: the whole history is not worth its time
+  for (int p = 0; p < df.words(); p++) {
+    if (!attached[p]) continue;
+    const auto [least, largest] = df.excess_in_patch(mode, p, peak);
+    if (least > 0.0)
       n += __builtin_popcountll(attached[p]);
-    else
-      each_bit(attached[p], [&](int k) { n += has_met(mode, df, p * PATCH + k); });
+    else if (!weak || largest > 0.0)
+      each_bit(attached[p], [&](int k) {
+        const int bit = p * PATCH + k;
+        n += weak ? df.excess(mode, bit, peak) > 0.0 : has_met(mode, df, bit);
+      });
+  }
   return n;
 }
 
@@ -451,7 +483,7 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
       if (square(part) <= needed) return;
       double v[3];
       for (int d = 0; d < 3; d++) v[d] = part * slip[d] + surface[d];
-      leave(df, bit, TANGENTIAL, n, v, attached, work);
+      leave(df, bit, TANGENTIAL, n, v, nullptr, attached, work);
     });
   }
 }
@@ -462,62 +494,100 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
 
 void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Workspace &work)
 {
+  const bool rings = df.damping >= 0.0;
   const MotionBound bound(record, course.spin0, peak_acceleration(), df.rolling, df.carrier_radius);
-  if (!bound.any_may_leave(df.least, df.largest, df.reach)) return;
+  if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach))) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
   SurfaceMotion motion(df.friction, df.rolling);
+  NormalMotion ringing(df.damping);
   int bits[SurfaceMotion::LANES];
-  // a collision of few time steps is followed in more
-  const std::vector<ImpulseRecord::Span> &spans = record.spans();
-  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;
+  static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
+  const std::vector<Step> followed = steps();
   const auto run = [&]() {
-    double before[3];
-    std::copy_n(course.spin0, 3, before);
-    for (size_t i = 0; i < spans.size(); i++) {
-      // spin at the end: between the means of this span and the next
-      const ImpulseRecord::Span &span = spans[i], &next = spans[std::min(i + 1, spans.size() - 1)];
-      double mean[3], after[3];
-      for (int d = 0; d < 3; d++) {
-        mean[d] = span.impulse[d] / span.duration;
-        after[d] = 0.5 * (span.turn[d] / span.duration + next.turn[d] / next.duration);
-      }
-      for (int k = 1; k <= parts; k++) {
-        double spin[3];
-        for (int d = 0; d < 3; d++) spin[d] = before[d] + (after[d] - before[d]) * k / parts;
-        motion.advance(mean, spin, span.duration / parts);
-      }
-      std::copy_n(after, 3, before);
+    double load[SurfaceMotion::LANES];
+    for (const Step &step : followed) {
+      motion.advance(step.acceleration, step.spin, step.dt);
+      if (!rings) continue;
+      for (int k = 0; k < motion.grains(); k++) load[k] = motion.outward_force(k, step.after) / df.sites[bits[k]].hold;
+      ringing.advance(load, step.dt);
     }
     motion.release();
+    ringing.ring_out();
     for (int k = 0; k < motion.grains(); k++) {
-      if (motion.attached(k)) continue;
+      if (motion.attached(k) && !(rings && !ringing.attached(k))) continue;
       double n[3], w[3];
       for (int d = 0; d < 3; d++) {
         n[d] = motion.direction(k, d);
         w[d] = motion.velocity(k, d);
       }
-      leave(df, bits[k], TANGENTIAL, n, w, attached, work);
+      leave(df, bits[k], TANGENTIAL, n, w, nullptr, attached, work);
     }
     motion.clear();
+    ringing.clear();
   };
 
   for (int patch = 0; patch < df.words(); patch++)
     each_bit(attached[patch], [&](int k) {
       const int bit = patch * PATCH + k;
       const DetachmentFunctions::Site &site = df.sites[bit];
-      const auto [turn, centrifugal] = bound.of(site.n, site.hold, site.shell);
-      const double needed = site.hold - centrifugal;
-      const auto excess = [&, turn = turn](const Motion &m) {
-        const double *a = m.acceleration;
-        return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed;
-      };
-      if (needed >= 0.0 && !history.any(excess, 1.0 + turn, 0.0)) return;
-      bits[motion.grains()] = bit;
-      motion.add(site.n, site.hold, site.shell - df.carrier_radius, df.carrier_radius, course.spin0);
+      if (!rings) {
+        const auto [turn, centrifugal] = bound.of(site.n, site.hold, site.shell);
+        const double needed = site.hold - centrifugal;
+        const auto excess = [&, turn = turn](const Motion &m) {
+          const double *a = m.acceleration;
+          return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed;
+        };
+        if (needed >= 0.0 && !history.any(excess, 1.0 + turn, 0.0)) return;
+      }
+      const double radius = site.shell - df.carrier_radius;
+      const int lane = motion.grains();
+      bits[lane] = bit;
+      motion.add(site.n, site.hold, radius, df.carrier_radius, course.spin0);
+      if (rings) {
+        constexpr double NONE[3] = {0.0, 0.0, 0.0};
+        const double r12 = effective_radius(df.carrier_radius, radius);
+        ringing.add(site.hold, breaking_gap(site.lever * radius, r12), motion.outward_force(lane, NONE) / site.hold);
+      }
       if (motion.full()) run();
     });
   run();
+}
+
+/* ----------------------------------------------------------------------
+   the course of the collision in steps small enough to follow grains. What is at the end of a span lies between the
+   means of this span and the next; contact forces end at 0
+------------------------------------------------------------------------- */
+
+std::vector<Collision::Step> Collision::steps() const
+{
+  const std::vector<ImpulseRecord::Span> &spans = record.spans();
+  const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;    // a collision of few time steps
+  std::vector<Step> found;
+  found.reserve(parts * spans.size());
+  double force0[3] = {0.0, 0.0, 0.0}, turn0[3];
+  std::copy_n(course.spin0, 3, turn0);
+  for (size_t i = 0; i < spans.size(); i++) {
+    const bool last = i + 1 == spans.size();
+    const ImpulseRecord::Span &span = spans[i], &next = spans[last ? i : i + 1];
+    const double mine = next.duration / (span.duration + next.duration);    // the last span is shorter than others
+    for (int k = 1; k <= parts; k++) {
+      const double done = static_cast<double>(k) / parts;
+      Step step;
+      step.dt = span.duration / parts;
+      for (int d = 0; d < 3; d++) {
+        step.acceleration[d] = span.impulse[d] / span.duration;
+        const double force = last ? 0.0 : mine * step.acceleration[d] + (1.0 - mine) * next.impulse[d] / next.duration;
+        const double turn = mine * span.turn[d] / span.duration + (1.0 - mine) * next.turn[d] / next.duration;
+        step.after[d] = force0[d] + done * (force - force0[d]);
+        step.spin[d] = turn0[d] + done * (turn - turn0[d]);
+      }
+      found.push_back(step);
+    }
+    std::copy_n(found.back().after, 3, force0);
+    std::copy_n(found.back().spin, 3, turn0);
+  }
+  return found;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -45,6 +45,7 @@ struct Material {
   double modulus;     //!< combined modulus E* of grain and carrier
   double friction;    //!< mu_f
   double rolling = 0.15;    //!< theta_crit; only INTEGRATE uses it
+  double damping = -1.0;    //!< damping ratio of the contact; INTEGRATE then lets grains ring (normal_motion.h), below 0 not
 };
 
 /*! One texture made ready for evaluation; shared by all carriers, never changed */
@@ -74,12 +75,13 @@ class DetachmentFunctions {
   friend class Collision;
 
   Criteria criteria;
-  double friction, rolling;
+  double friction, rolling, damping;
   double carrier_radius;
   double mass;
   double least, largest;            // of hold
   double reach;                     // largest shell
-  double moving;                    // least inertia force per mass that makes a grain slide
+  double least_to[NMODES];          // least inertia force per mass that meets SLIDING or ROLLING for some grain
+  double moving;                    // the one that can make a grain slide (or leave), within limits
   double slow2;                     // no tangential lift-off below this square of a velocity
   std::vector<uint64_t> all;        // bits that hold a grain: all but the last ones of the last word
   // by bit: all that is asked of a grain in one cache line
@@ -95,7 +97,7 @@ class DetachmentFunctions {
   // by patch: a direction, the largest chord from it to a grain, and the extremes of its grains
   struct Patch {
     double centre[3], radius;
-    double least_hold, largest_hold, largest_lever;
+    double least_hold, largest_hold, least_lever, largest_lever, least_shell;
   };
   std::vector<Patch> patches;
 
@@ -107,8 +109,11 @@ class DetachmentFunctions {
   Limit limit(Mode mode, double lever) const { return mode == SLIDING ? Limit{2.0, friction} : Limit{1.0, lever}; }
   // by how much a grain meets it, per grain mass
   double excess(Mode mode, int bit, const Motion &motion) const;
-  // whether all grains of a patch do
-  bool all_exceed(Mode mode, int patch, const Motion &motion) const;
+  // least and largest that the grains of a patch can have
+  struct Range {
+    double least, largest;
+  };
+  Range excess_in_patch(Mode mode, int patch, const Motion &motion) const;
 };
 
 /*! One grain that has just left */
@@ -122,6 +127,7 @@ struct Detachment {
 /*! What the collisions of a rank share while one of them is looked at */
 struct Workspace {
   std::vector<Detachment> detached;    //!< grains that have left: to be taken and cleared by the caller
+  bool locate = true;                  //!< whether the caller wants their directions and velocities
   struct Candidate {
     int from;    // step of the window from which the grain could lift off
     int bit;
@@ -177,7 +183,8 @@ class Collision {
   /*! Of the steps so far, at rest of those until then */
   double duration() const { return at_rest() ? course.lively.time : course.time; }
   double peak_acceleration() const;           //!< largest |contact acceleration| so far
-  /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin() */
+  /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin(); where no inertia could make any slide,
+   *  those that have met it at the largest acceleration */
   int grains_that(Mode mode, const DetachmentFunctions &functions, const uint64_t *attached) const;
 
   // transfer to another rank and restart, as numbers
@@ -223,11 +230,16 @@ class Collision {
   void check_all(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
   void estimate(const DetachmentFunctions &functions, const Moment &last, uint64_t *attached, Workspace &work);
   void integrate(const DetachmentFunctions &functions, uint64_t *attached, Workspace &work);
+  struct Step {
+    double dt, acceleration[3];     // mean
+    double after[3], spin[3];       // acceleration and spin at the end
+  };
+  std::vector<Step> steps() const;
   // a grain leaves the place where it stuck, or one along the surface
   void leave_place(const DetachmentFunctions &functions, int bit, Mode mode, const Motion &motion, uint64_t *attached,
                    Workspace &work);
   void leave(const DetachmentFunctions &functions, int bit, Mode mode, const double *direction, const double *velocity,
-             uint64_t *attached, Workspace &work);
+             const Motion *now, uint64_t *attached, Workspace &work);
   bool has_met(Mode mode, const DetachmentFunctions &functions, int bit) const;
 };
 

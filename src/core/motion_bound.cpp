@@ -14,20 +14,24 @@ using namespace Dust;
 MotionBound::MotionBound(const ImpulseRecord &record, const double *spin, double peak, double rolling, double carrier_radius) :
     peak(peak), rolling(rolling), carrier_radius(carrier_radius)
 {
-  double last[3] = {spin[0], spin[1], spin[2]};
+  double last[3] = {spin[0], spin[1], spin[2]}, before[3] = {0.0, 0.0, 0.0};
   fastest = std::sqrt(dot(last, last));
   for (const ImpulseRecord::Span &span : record.spans()) {
     time += span.duration;
     for (int d = 0; d < 3; d++) axis[d] += span.impulse[d];
-    double change[3];
+    double change[3], jump[3];
     for (int d = 0; d < 3; d++) {
-      const double mean = span.turn[d] / span.duration;
+      const double mean = span.turn[d] / span.duration, force = span.impulse[d] / span.duration;
       change[d] = mean - last[d];
       last[d] = mean;
+      jump[d] = force - before[d];
+      before[d] = force;
     }
     fastest = std::max(fastest, std::sqrt(dot(last, last)));
     spun += std::sqrt(dot(change, change));
+    changes += std::sqrt(dot(jump, jump));
   }
+  changes += std::sqrt(dot(before, before));
   const double size = std::sqrt(dot(axis, axis));
   for (double &x : axis) x = size > 0.0 ? x / size : 0.0;
   for (const ImpulseRecord::Span &span : record.spans()) {
@@ -65,9 +69,26 @@ MotionBound::Bound MotionBound::of(const double *n, double hold, double shell) c
 
 /* ---------------------------------------------------------------------- */
 
-bool MotionBound::any_may_leave(double least_hold, double largest_hold, double largest_shell) const
+MotionBound::Largest MotionBound::of_any(double largest_hold, double largest_shell) const
 {
   const double v = along + aside + spring(largest_hold, carrier_radius) + spin(largest_shell);
   const double turn = MARGIN * (v / carrier_radius + fastest) * time, w = v + largest_shell * fastest;
-  return peak * (1.0 + turn) + MARGIN * w * w / carrier_radius > least_hold;
+  const double centrifugal = MARGIN * w * w / carrier_radius;
+  return {peak * (1.0 + turn) + centrifugal, turn, centrifugal};
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MotionBound::any_may_leave(double least_hold, double largest_hold, double largest_shell) const
+{
+  return of_any(largest_hold, largest_shell).outward > least_hold;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MotionBound::any_may_ring_off(double least_hold, double largest_hold, double largest_shell) const
+{
+  const auto [outward, turn, centrifugal] = of_any(largest_hold, largest_shell);
+  // |w|^2 goes up to its largest and down again, at most twice over: friction takes what was gained
+  return outward > 0.3 * least_hold || changes + turn * peak + 4.0 * centrifugal > 0.95 * least_hold;
 }

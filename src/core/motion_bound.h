@@ -46,6 +46,13 @@ class MotionBound {
   /*! Whether any grain can leave that has a pull-off force per mass between these two, and |r_pd| up to the third */
   bool any_may_leave(double least_hold, double largest_hold, double largest_shell) const;
 
+  /*! Whether any grain can then ring so that its contact breaks, whatever damps it (normal_motion.h)
+   *
+   * An energy e above that of rest in the contact grows by no more than |dF_n/dt| times the distance from there, which is below
+   * 1.963 sqrt(e) (F_c = delta_c = 1) up to the end of the branch, as long as |F_n| < 0.3. At e = 0.9267, for F_n = 0.3, the
+   * contact breaks: F_n must have changed by 0.98 in all. */
+  bool any_may_ring_off(double least_hold, double largest_hold, double largest_shell) const;
+
  private:
   double peak, rolling, carrier_radius;
   double time = 0.0;
@@ -53,8 +60,13 @@ class MotionBound {
   double along = 0.0, aside = 0.0;        // sums of what each has along the axis and aside of it
   double fastest = 0.0;                   // omega_max
   double spun = 0.0;                      // integral |alpha| dt
+  double changes = 0.0;                   // integral |da/dt| dt, from 0 to 0
 
   static constexpr double MARGIN = 1.02;    // for the steps of SurfaceMotion
+  struct Largest {
+    double outward, turn, centrifugal;    // F_n/m_d is below the first
+  };
+  Largest of_any(double largest_hold, double largest_shell) const;
   // the terms of V
   double spring(double hold, double shell) const;
   double spin(double shell) const;

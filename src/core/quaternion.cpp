@@ -19,23 +19,11 @@ Quaternion Quaternion::operator*(const Quaternion &b) const
 
 /* ---------------------------------------------------------------------- */
 
-void Quaternion::turn_by(const double *spin, double dt)
+void Quaternion::large_angle(double a2, double &c, double &s)
 {
-  const double half[3] = {0.5 * dt * spin[0], 0.5 * dt * spin[1], 0.5 * dt * spin[2]};
-  const double a2 = dot(half, half);
-  if (a2 == 0.0) return;
-  double c, s;    // cos(a), sin(a)/a
-  if (a2 < 1.0e-4) {    // all but always in a time step: the series is exact to round-off
-    c = 1.0 - a2 * (0.5 - a2 * (1.0 / 24.0 - a2 / 720.0));
-    s = 1.0 - a2 * (1.0 / 6.0 - a2 * (1.0 / 120.0 - a2 / 5040.0));
-  } else {
-    const double a = std::sqrt(a2);
-    c = std::cos(a);
-    s = std::sin(a) / a;
-  }
-  *this = Quaternion{{c, s * half[0], s * half[1], s * half[2]}} * *this;
-  const double size2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  for (double &x : q) x *= 1.5 - 0.5 * size2;    // 1/sqrt, which is 1 but for round-off
+  const double a = std::sqrt(a2);
+  c = std::cos(a);
+  s = std::sin(a) / a;
 }
 
 /* ---------------------------------------------------------------------- */

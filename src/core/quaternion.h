@@ -20,7 +20,22 @@ struct Quaternion {
   void to_body(const double *space, double *body) const { turn(-q[0], space, body); }
 
   /*! Turns the body for a time dt with the spin (of space, rad/time), which is that of the middle of the step */
-  void turn_by(const double *spin, double dt);
+  void turn_by(const double *spin, double dt)
+  {
+    const double x = 0.5 * dt * spin[0], y = 0.5 * dt * spin[1], z = 0.5 * dt * spin[2], a2 = x * x + y * y + z * z;
+    if (a2 == 0.0) return;
+    // cos(a) and sin(a)/a: all but always in a time step this is exact to round-off
+    double c = 1.0 - a2 * (0.5 - a2 / 24.0), s = 1.0 - a2 * (1.0 / 6.0 - a2 / 120.0);
+    if (a2 > 1.0e-5) large_angle(a2, c, s);
+    const double sx = s * x, sy = s * y, sz = s * z, w = q[0], i = q[1], j = q[2], k = q[3];
+    q[0] = c * w - sx * i - sy * j - sz * k;
+    q[1] = c * i + sx * w + sy * k - sz * j;
+    q[2] = c * j - sx * k + sy * w + sz * i;
+    q[3] = c * k + sx * j - sy * i + sz * w;
+    // 1/|q|, which is 1 but for round-off
+    const double part = 1.5 - 0.5 * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (double &component : q) component *= part;
+  }
 
   /*! The same along the body's own axes */
   Quaternion operator*(const Quaternion &first) const;
@@ -28,6 +43,7 @@ struct Quaternion {
   Quaternion inverse() const { return {{q[0], -q[1], -q[2], -q[3]}}; }
 
  private:
+  static void large_angle(double a2, double &c, double &s);
   void turn(double w, const double *v, double *result) const
   {
     // v + 2 w (u x v) + 2 u x (u x v) with u = (x, y, z)

@@ -20,7 +20,7 @@ namespace Dust {
  *   rolling          dxi/dt = R_12 (Omega - omega) x n, |xi| held at R_12 theta_crit
  *   its stiffness    k = 4 F_c (a/a0)^(3/2) = 2 F_c (1 + sqrt(1 - F_n/F_c))
  *
- * There is no normal motion: the contact follows its load at once. Dominik & Tielens, Philos. Mag. A 72, 783 (1995)
+ * There is no normal motion: the contact follows its load at once (normal_motion.h follows it as it rings). Dominik & Tielens, Philos. Mag. A 72, 783 (1995)
  * for rolling; the limit of friction is that of the detachment functions.
  *
  * Here all forces are per grain mass, c = F_c/m. In place of w, Omega and xi stand what a grain that turns with its carrier
@@ -64,6 +64,17 @@ class SurfaceMotion {
   void release();
 
   bool attached(int grain) const { return here[grain] > 0.0; }
+
+  /*! F_n/m_d at an acceleration of the carrier */
+  double outward_force(int grain, const double *a) const
+  {
+    double w2 = 0.0, an = 0.0;
+    for (int d = 0; d < 3; d++) {
+      w2 += velocity(grain, d) * velocity(grain, d);
+      an += a[d] * n[d][grain];
+    }
+    return w2 * per_shell[grain] - an;
+  }
 
   // the motion of a grain, at last when it left; vectors of the surface
   double direction(int grain, int d) const { return n[d][grain]; }

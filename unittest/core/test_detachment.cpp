@@ -60,13 +60,17 @@ struct Outcome {
 Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria &criteria, const History &h)
 {
   Outcome out;
-  double reach = 0.0, least = 1.0e300;
+  double reach = 0.0, least = 1.0e300, rolling = 1.0e300;
   for (const Grain &g : texture.grains) {
     const double mass = 4.0 / 3.0 * M_PI * g.radius * g.radius * g.radius * m.density;
     reach = std::max(reach, texture.carrier_radius + g.radius);
-    least = std::min(least, pull_off_force(m.gamma, effective_radius(texture.carrier_radius, g.radius)) / mass);
+    const double r12 = effective_radius(texture.carrier_radius, g.radius), hold = pull_off_force(m.gamma, r12) / mass;
+    const double lever = equilibrium_contact_radius(m.gamma, r12, m.modulus) / g.radius;
+    least = std::min(least, hold);
+    rolling = std::min(rolling, hold * lever / std::hypot(1.0, lever));
   }
-  const double sliding = least * std::min(1.0, std::max(0.1, 2.0 * m.friction / std::hypot(1.0, m.friction)));
+  const double slide = least * 2.0 * m.friction / std::hypot(1.0, m.friction);
+  const double sliding = criteria.ibrahim ? std::min({least, slide, rolling}) : std::min(least, std::max(0.1 * least, slide));
 
   // spin of each step, and where the collision ends: at its last step or at rest
   std::vector<Vec> spin(h.a.size());
@@ -85,6 +89,14 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
     peak = std::max(peak, size(h.a[k]));
     out.steps = k + 1;
     rests = k - lively > 3 * (lively + 1 - first);
+  }
+  // in a weak collision only the step of the largest acceleration counts for what is met
+  bool weak = true;
+  size_t strongest = 0;
+  for (int k = 0; k < out.steps; k++) {
+    const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
+    weak &= size(h.a[k]) + reach * (size(alpha) + dot(spin[k], spin[k])) <= sliding;
+    if (size(h.a[k]) > size(h.a[strongest])) strongest = k;
   }
   const size_t last = rests ? lively : h.a.size() - 1;
   Vec dv = {0.0, 0.0, 0.0}, spin1 = rests ? spin[lively] : now, so_far = {0.0, 0.0, 0.0};
@@ -110,8 +122,8 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
       const Vec r = r_pd * n, f = -mass * (h.a[k] + cross(alpha, r) + cross(spin[k], cross(spin[k], r)));
       const double fn = dot(f, n), ft = size(f - fn * n);
       const bool slides = ft > m.friction * std::fabs(2.0 * fc - fn), rolls = ft * g.radius > std::fabs(fc - fn) * a0;
-      slid |= slides;
-      rolled |= rolls;
+      slid |= slides && (!weak || k == static_cast<int>(strongest));
+      rolled |= rolls && (!weak || k == static_cast<int>(strongest));
       largest = std::max(largest, std::fabs(2.0 * fc - fn));
       int mode = NMODES;
       if (fn > fc) mode = NORMAL;

@@ -8,6 +8,7 @@
 #include "impulse_record.h"
 #include "jkr.h"
 #include "motion_bound.h"
+#include "normal_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -528,6 +529,28 @@ TEST(SurfaceMotion, DoesNotDependOnTheAxes)
   }
 }
 
+TEST(SurfaceMotion, GrainsOfACollisionThatRingLeaveMore)
+{
+  // straight, as fast as it takes: squeezed on the north and let go
+  Texture texture = place_monolayer(RP, 2.0 * RD, 0.2, BareCap(), 1);
+  History h;
+  h.dt = 3.0e-6 / 600;
+  h.smooth = false;
+  for (int k = 0; k < 600; k++) h.a.push_back({0.0, 0.0, 50.0 * HOLD * std::sin(M_PI * (k + 0.5) / 600)});
+  h.spin.assign(600, Vec());
+  std::map<double, std::map<int, Mode>> left;
+  for (double zeta : {-1.0, 3.0, 0.06}) {
+    Material m = CALCITE;
+    m.damping = zeta;
+    const DetachmentFunctions functions(texture, m, integrate());
+    left[zeta] = by_collision(functions, h);
+    EXPECT_EQ(by_collision(functions, h, 17), left[zeta]);
+  }
+  EXPECT_EQ(left[3.0], left[-1.0]);
+  EXPECT_GT(left[0.06].size(), left[-1.0].size() + 100);
+  for (const auto &grain : left[-1.0]) EXPECT_EQ(left[0.06].count(grain.first), 1u);
+}
+
 TEST(ImpulseRecord, KeepsSumsInBoundedMemory)
 {
   std::mt19937 random(6);
@@ -655,4 +678,35 @@ TEST(MotionBound, NeverSparesAGrainThatIsThrownOff)
   EXPECT_GT(collisions, 2000);
   EXPECT_GT(thrown, 2000);
   EXPECT_GT(spared, 10000);
+}
+
+TEST(MotionBound, NeverSparesAGrainThatRingsOff)
+{
+  // an undamped contact under loads that swing at its frequency; spared where they change by 0.95 F_c, thrown off by far more
+  const double gap = 2.267e-10, mass = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0, n[3] = {0.0, 0.0, 1.0};
+  const double period = 2.0 * M_PI / std::sqrt(1.2 * CALCITE.modulus * equilibrium_contact_radius(CALCITE.gamma, effective_radius(RP, RD), CALCITE.modulus) / mass);
+  int spared = 0, thrown = 0;
+  for (int swings = 1; swings <= ImpulseRecord::MOST / 2; swings++)
+    for (double strength = 0.0; strength < 0.5; strength += 0.01) {
+      ImpulseRecord record;
+      NormalMotion ringing(0.0);
+      SurfaceMotion motion(0.3, 0.15);
+      motion.add(n, HOLD, RD, RP, NO_SPIN);
+      ringing.add(HOLD, gap, 0.0);
+      for (int k = 0; k < 2 * swings; k++) {
+        const double a[3] = {0.0, 0.0, (k % 2 ? 1.0 : -1.0) * strength * HOLD};
+        record.add(a, NO_SPIN, 0.5 * period);
+        const double load = motion.outward_force(0, a) / HOLD;
+        EXPECT_NEAR(load, -a[2] / HOLD, 1e-12);
+        ringing.advance(&load, 0.0);
+        ringing.advance(&load, 0.5 * period);
+      }
+      ringing.ring_out();
+      const bool may = MotionBound(record, NO_SPIN, strength * HOLD, 0.15, RP).any_may_ring_off(HOLD, HOLD, SHELL);
+      spared += !may;
+      thrown += !ringing.attached(0);
+      if (!may) EXPECT_TRUE(ringing.attached(0)) << swings << " swings of " << strength;
+    }
+  EXPECT_GT(spared, 50);
+  EXPECT_GT(thrown, 200);
 }

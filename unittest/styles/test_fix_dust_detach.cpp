@@ -48,6 +48,10 @@ TEST(FixDustDetach, OutputsAgreeWithEachOther)
   // each grain's own motion; the resolved run of this impact loses 0.7171
   EXPECT_NEAR(impact("tangential integrate")[0], 0.7233, 0.001);
   EXPECT_EQ(impact("tangential integrate rolling 0.15"), impact("tangential integrate"));
+  // if grains ring it meets resolved runs with the same damping ratio
+  EXPECT_NEAR(impact("tangential integrate damping 0.06")[0], 0.7729, 0.004);
+  EXPECT_NEAR(impact("tangential integrate damping 0.2")[0], 0.7489, 0.004);
+  EXPECT_EQ(impact("damping 0.06"), impact());
   // at 8 m/s the last grains that leave slide, at 12 m/s they roll
   EXPECT_GT(impact("tangential integrate rolling 0", 0.0, -12.0)[4], impact("tangential integrate", 0.0, -12.0)[4]);
   EXPECT_EQ(impact("rolling 0.5"), impact());
@@ -465,6 +469,7 @@ TEST(FixDustDetach, WrongInputIsNamed)
   names(ok + "distribution rrsb 0 3", "distribution");
   names(ok + "tangential sideways", "sideways");
   names(ok + "rolling -1", "rolling");
+  names(ok + "damping -1", "damping");
   names(ok + "rolling", "rolling");
   names(ok + "criteria all", "all");
   names(ok + "every 0", "every");

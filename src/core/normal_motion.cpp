@@ -1,0 +1,111 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+// compiled as surface_motion.cpp
+#include "normal_motion.h"
+
+#include "geometry.h"
+#include "jkr.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace Dust;
+
+namespace {
+
+constexpr double STIFFNESS = 1.8 / ROOT_6;    // k0 delta_c/F_c: 12/(20/3 6^(1/3)), the slope of the branch at y = 1
+constexpr double STEP = 0.3;                  // times the frequency: a period in 21 steps
+constexpr double PERIODS = 3.0;               // after the collision
+
+double overlap_of(double y) { return ROOT_6 * (2.0 * y * y * y - 4.0 / 3.0) * y; }
+double slope_of(double y) { return 1.0 / (ROOT_6 * (8.0 * y * y * y - 4.0 / 3.0)); }
+
+// y at rest under a load
+double at_rest(double load) { return std::cbrt(0.5 * (1.0 + std::sqrt(std::max(0.0, 1.0 - load)))); }
+
+}    // namespace
+
+NormalMotion::NormalMotion(double damping) : damping(damping * std::sqrt(STIFFNESS))
+{
+  clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void NormalMotion::clear()
+{
+  count = 0;
+  for (int i = 0; i < LANES; i++) {
+    here[i] = G[i] = U[i] = rate[i] = 0.0;
+    gap[i] = y[i] = 1.0;
+    D[i] = overlap_of(1.0);
+    slope[i] = slope_of(1.0);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void NormalMotion::add(double hold, double breaking_gap, double load)
+{
+  const int i = count++;
+  here[i] = 1.0;
+  gap[i] = breaking_gap;
+  rate[i] = std::sqrt(hold / breaking_gap);
+  G[i] = load;
+  y[i] = at_rest(load);
+  D[i] = overlap_of(y[i]);
+  slope[i] = slope_of(y[i]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void NormalMotion::advance(const double *load, double dt)
+{
+  // dF/dD = 4 (6 y^5 - 3 y^2) dy/dD is below 3 y^2/6^(1/3) + 1/2 on the branch up to where the load is -G
+  double fastest = 0.0;
+  for (int i = 0; i < count; i++) {
+    const double most = std::max({y[i], at_rest(load[i]), at_rest(G[i])});
+    fastest = std::max(fastest, here[i] * rate[i] * rate[i] * (3.0 / ROOT_6 * most * most + 0.5));
+  }
+  advance(load, dt, 1 + static_cast<int>(dt * std::sqrt(fastest) / STEP));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void NormalMotion::advance(const double *load, double dt, int steps)
+{
+  // the branch ends where slope has no bound: y stays this far from there
+  constexpr double LEAST_Y = 1.02 * 0.5503212;    // 6^(-1/3)
+  double grow[LANES], h[LANES];
+  for (int i = 0; i < LANES; i++) {
+    grow[i] = i < count ? (load[i] - G[i]) / steps : 0.0;
+    h[i] = rate[i] * dt / steps;
+  }
+  for (int k = 0; k < steps; k++)
+    for (int i = 0; i < LANES; i++) {
+      const double step = h[i] * here[i], y2 = y[i] * y[i], y3 = y2 * y[i];
+      const double drag = damping * y2 * step, force = G[i] + 4.0 * y3 * (y3 - 1.0);
+      const double u = ((1.0 - drag) * U[i] - step * force) / (1.0 + drag), d = D[i] + step * u;
+      // y goes on as it did, and one step of Newton's method
+      const double along = y[i] + step * u * slope[i], guess = along > LEAST_Y ? along : LEAST_Y, g3 = guess * guess * guess;
+      const double per = 1.0 / (ROOT_6 * (8.0 * g3 - 4.0 / 3.0));
+      const double more = (d - ROOT_6 * (2.0 * g3 - 4.0 / 3.0) * guess) * per, next = guess + (more < 0.1 ? more : 0.1);
+      y[i] = next > LEAST_Y ? next : LEAST_Y;
+      slope[i] = per;
+      U[i] = u;
+      D[i] = d;
+      G[i] += grow[i];
+      here[i] = d < -1.0 ? 0.0 : here[i];
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void NormalMotion::ring_out()
+{
+  double slowest = 0.0;
+  for (int i = 0; i < count; i++) slowest = std::max(slowest, here[i] / std::max(rate[i], 1e-300));
+  if (slowest > 0.0) advance(G, PERIODS * 2.0 * PI / std::sqrt(STIFFNESS) * slowest);
+}
