@@ -35,7 +35,7 @@ static constexpr int FIXED = 1;    // in Domain::boundary
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
-    attached(nullptr), orientation(nullptr), window_mass(nullptr), newcomers(true), mine{}, open_windows(0), too_soft(1.0),
+    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), newcomers(true), mine{}, open_windows(0), too_soft(1.0),
     warned(false)
 {
   parse(narg, arg);
@@ -76,6 +76,7 @@ FixDustDetach::~FixDustDetach()
   memory->destroy(state);
   memory->destroy(attached);
   memory->destroy(orientation);
+  memory->destroy(angle);
   memory->destroy(window_mass);
   memory->destroy(array_atom);
 }
@@ -314,6 +315,7 @@ void FixDustDetach::post_force(int /*vflag*/)
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
+  if (rotation && update->ntimestep % TURN_EVERY == 0) turn();
 
   for (int i = 0; i < nlocal; i++, f += 3) {
     // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
@@ -322,7 +324,8 @@ void FixDustDetach::post_force(int /*vflag*/)
     const bool touches = (bits[0] | bits[1] | bits[2]) << 1;
     if (!rotation && !touches && state[i] <= FREE_FLIGHT) continue;
     if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
-    if (rotation) orientation[i].turn_by(atom->omega[i], update->dt);    // from the step before to this one
+    if (rotation)    // from the step before to this one
+      for (int d = 0; d < 3; d++) angle[i][d] += atom->omega[i][d] * update->dt;
     if (touches)
       collide(i);
     else if (state[i] >= 0)
@@ -336,6 +339,19 @@ void FixDustDetach::post_force(int /*vflag*/)
     int any = !losses.empty();
     MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
     if (any) next_reneighbor = update->ntimestep + 1;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the angles of a few steps may be summed, as they are small; at steps that depend on nothing else
+------------------------------------------------------------------------- */
+
+void FixDustDetach::turn()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
+    orientation[i].turn_by(angle[i], 1.0);
+    std::fill_n(angle[i], 3, 0.0);
   }
 }
 
@@ -376,7 +392,9 @@ void FixDustDetach::collide(int i)
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
   state[i] = start_collision();
-  collisions[state[i]].begin(orientation ? orientation[i] : Dust::Quaternion(), motion.spin);
+  Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
+  if (rotation) now.turn_by(angle[i], 1.0);
+  collisions[state[i]].begin(now, motion.spin);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -753,6 +771,7 @@ void FixDustDetach::grow_arrays(int nmax)
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
   memory->grow(array_atom, nmax, NCOLUMNS, "dust/detach:array_atom");
   if (oriented()) memory->grow(orientation, nmax, "dust/detach:orientation");
+  if (rotation) memory->grow(angle, nmax, 3, "dust/detach:angle");
   if (functions) memory->grow(attached, nmax, functions->words(), "dust/detach:attached");
 }
 
@@ -764,6 +783,7 @@ void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
   window_mass[j] = window_mass[i];
   std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), array_atom[j]);
   if (orientation) orientation[j] = orientation[i];
+  if (angle) std::copy_n(angle[i], 3, angle[j]);
   if (functions) std::copy_n(attached[i], functions->words(), attached[j]);
 }
 
@@ -773,6 +793,7 @@ void FixDustDetach::set_arrays(int i)
 {
   state[i] = NO_CARRIER;
   window_mass[i] = 0.0;
+  if (angle) std::fill_n(angle[i], 3, 0.0);
   std::fill_n(array_atom[i], static_cast<int>(NCOLUMNS), 0.0);
   newcomers = true;
 }
@@ -793,7 +814,7 @@ bool FixDustDetach::oriented() const
 
 int FixDustDetach::orientation_size() const
 {
-  return oriented() ? 4 : 0;
+  return rotation ? 7 : oriented() ? 4 : 0;
 }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
@@ -822,6 +843,7 @@ int FixDustDetach::pack(int i, double *buf) const
   p = std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), p);
   *p++ = window_mass[i];
   if (orientation) p = std::copy_n(orientation[i].q, 4, p);
+  if (angle) p = std::copy_n(angle[i], 3, p);
   std::memcpy(p, attached[i], words * sizeof(uint64_t));
   p += words;
   if (state[i] >= 0) {
@@ -845,6 +867,7 @@ void FixDustDetach::unpack(int i, const double *buf)
   window_mass[i] = *p++;
   open_windows = 2;
   if (orientation) std::copy_n(p, 4, orientation[i].q);
+  if (angle) std::copy_n(p + 4, 3, angle[i]);
   p += orientation_size();
   std::memcpy(attached[i], p, words * sizeof(uint64_t));
   p += words;

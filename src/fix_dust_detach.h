@@ -76,7 +76,8 @@ class FixDustDetach : public Fix {
   enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: index of the collision
   int *state;
   uint64_t **attached;
-  Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever
+  Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever: TURN_EVERY steps ago at most,
+  double **angle;                   // with rotation: about which the carrier has turned since
   double *window_mass;    // lost in the window that is not complete yet
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
   bool newcomers;         // atoms were added that may be carriers
@@ -88,6 +89,8 @@ class FixDustDetach : public Fix {
   int start_collision();
   void drop_lost_collisions();
   Dust::Motion motion_of(int) const;
+  static constexpr int TURN_EVERY = 16;
+  void turn();
   void collide(int);
   void begin_collision(int, const Dust::Motion &);
   void finish_collision(int, int);

@@ -182,8 +182,9 @@ DetachmentFunctions::Range DetachmentFunctions::excess_in_patch(Mode mode, int p
 void Collision::begin(const Quaternion &orientation, const double *spin)
 {
   course = Course{};
-  course.frame = orientation;
-  orientation.to_body(spin, course.spin0);
+  course.frame = course.now = orientation;
+  std::copy_n(spin, 3, course.spin0);
+  course.weak = 1.0;
   start.clear();
   history.clear();
   record.clear();
@@ -193,39 +194,50 @@ void Collision::begin(const Quaternion &orientation, const double *spin)
 
 /* ---------------------------------------------------------------------- */
 
-bool Collision::step(const DetachmentFunctions &df, const Motion &in_space, double dt, uint64_t *attached, Workspace &work)
+bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double dt, uint64_t *attached, Workspace &work)
 {
   Course &c = course;
-  Motion m = {};
-  if (c.frame.is_none()) std::copy_n(in_space.acceleration, 3, m.acceleration);
-  else c.frame.to_body(in_space.acceleration, m.acceleration);
-  for (int d = 0; d < 3; d++) c.impulse[d] += m.acceleration[d] * dt;
-  const bool turns = in_space.turns();
-  if (turns) {
-    c.frame.to_body(in_space.angular_acceleration, m.angular_acceleration);
-    c.frame.to_body(in_space.spin, m.spin);
-    if (c.steps > 0.0) c.turn.turn_by(m.spin, dt);
-    for (int d = 0; d < 3; d++) m.spin[d] += 0.5 * dt * m.angular_acceleration[d];
-  }
+  Motion in_space = middle;
+  const bool turns = middle.turns();
   c.time += dt;
-  c.steps += 1.0;
-  std::copy_n(m.spin, 3, c.spin);
-  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(m.acceleration, c.spin, dt);
-  if (!c.turn.is_none()) {    // along the carrier's axes
-    c.turn.to_body(m.acceleration, m.acceleration);
-    c.turn.to_body(m.angular_acceleration, m.angular_acceleration);
-    c.turn.to_body(m.spin, m.spin);
+  for (int d = 0; d < 3; d++) {
+    c.impulse[d] += middle.acceleration[d] * dt;
+    in_space.spin[d] += 0.5 * dt * middle.angular_acceleration[d];
+    c.spin[d] = in_space.spin[d];
   }
-
-  const double size2 = dot(m.acceleration, m.acceleration), turning = turns ? m.turning() : 0.0;
-  const double most = std::sqrt(size2) + df.reach * turning;    // |g| on any grain
-  c.most = std::max(c.most, most);
-  if (most > df.moving || history.empty() || size2 > history.peak2()) {
-    // after a pause longer than the burst before it, another one begins
+  const bool first = c.steps == 0.0;
+  c.steps += 1.0;
+  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(in_space.acceleration, in_space.spin, dt);
+  // after a pause longer than the burst before it, another one begins
+  const auto lively = [&c]() {
     if (c.steps - 1.0 - c.lively_end > c.lively_end - c.burst) c.burst = c.steps - 1.0;
     c.lively_end = c.steps;
     c.lively = c;
-  }
+  };
+
+  const double size2 = dot(in_space.acceleration, in_space.acceleration);
+  if (c.weak > 0.0) {
+    if (!first)
+      for (int d = 0; d < 3; d++) c.turned[d] += middle.spin[d] * dt;
+    if (!df.may_move(in_space)) {
+      if (first || size2 > c.largest2) {
+        c.largest = in_space;
+        c.largest2 = size2;
+        std::copy_n(c.turned, 3, c.largest_turned);
+        lively();
+      }
+      return false;
+    }
+    if (!first) history.add(largest_of_weak(), c.largest2);
+    c.now.turn_by(c.turned, 1.0);
+    c.weak = 0.0;
+  } else if (turns)
+    c.now.turn_by(middle.spin, dt);
+
+  const Motion m = in_space.along(c.now);
+  const double turning = turns ? m.turning() : 0.0;
+  const double most = std::sqrt(size2) + df.reach * turning;    // |g| on any grain
+  if (most > df.moving || size2 > history.peak2()) lively();
 
   Split s = {INF, INF};
   if (!history.empty() && size2 <= history.peak2() && (!turns || most > df.least)) {
@@ -357,36 +369,41 @@ void Collision::check_all(const DetachmentFunctions &df, const Motion &motion, u
 }
 
 /* ----------------------------------------------------------------------
-   at a motion, `now`, which the history does not have yet; or along the surface
+   at a motion, `now`, which the history does not have yet; or along the surface. Direction and velocity along some axes.
 ------------------------------------------------------------------------- */
 
 void Collision::leave_place(const DetachmentFunctions &df, int bit, Mode mode, const Motion &motion, uint64_t *attached,
                             Workspace &work)
 {
   const auto &site = df.sites[bit];
-  double direction[3] = {}, spin[3], velocity[3] = {};
+  double velocity[3] = {};
   if (work.locate) {
-    course.turn.to_space(site.n, direction);
-    course.turn.to_space(motion.spin, spin);
-    cross(spin, direction, velocity);
+    cross(motion.spin, site.n, velocity);
     for (double &x : velocity) x *= site.shell;
   }
-  leave(df, bit, mode, direction, velocity, &motion, attached, work);
+  leave(df, bit, mode, course.now, site.n, velocity, &motion, attached, work);
 }
 
-void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const double *direction, const double *velocity,
-                      const Motion *now, uint64_t *attached, Workspace &work)
+void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const Quaternion &axes, const double *direction,
+                      const double *velocity, const Motion *now, uint64_t *attached, Workspace &work)
 {
   attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
   for (Mode met : {SLIDING, ROLLING})
     course.count[met] += (now && df.excess(met, bit, *now) > 0.0) || has_met(met, df, bit);
   work.detached.push_back({bit, mode, {}, {}});
   if (!work.locate) return;
-  course.frame.to_space(direction, work.detached.back().direction);
-  course.frame.to_space(velocity, work.detached.back().velocity);
+  axes.to_space(direction, work.detached.back().direction);
+  axes.to_space(velocity, work.detached.back().velocity);
 }
 
 /* ---------------------------------------------------------------------- */
+
+Motion Collision::largest_of_weak() const
+{
+  Quaternion then = course.frame;
+  then.turn_by(course.largest_turned, 1.0);
+  return course.largest.along(then);
+}
 
 bool Collision::has_met(Mode mode, const DetachmentFunctions &df, int bit) const
 {
@@ -397,9 +414,9 @@ bool Collision::has_met(Mode mode, const DetachmentFunctions &df, int bit) const
 int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint64_t *attached) const
 {
   int n = static_cast<int>(course.count[mode]);
-  if (course.most <= df.least_to[mode]) return n;
-  const Motion &peak = history.peak();
-  const bool weak = course.most <= df.moving;    // most contacts of a bed: the whole history is not worth its time
+  const bool weak = course.weak > 0.0;
+  const Motion peak = weak ? largest_of_weak() : history.peak();
+  if (weak && std::sqrt(course.largest2) + df.reach * peak.turning() <= df.least_to[mode]) return n;
   for (int p = 0; p < df.words(); p++) {
     if (!attached[p]) continue;
     const auto [least, largest] = df.excess_in_patch(mode, p, peak);
@@ -418,7 +435,7 @@ int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint6
 
 double Collision::peak_acceleration() const
 {
-  return std::sqrt(history.peak2());
+  return std::sqrt(course.weak > 0.0 ? course.largest2 : history.peak2());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -428,8 +445,9 @@ bool Collision::end(const DetachmentFunctions &df, const double *spin, uint64_t 
   Moment last = course.lively;
   if (!at_rest()) {
     last = course;
-    course.frame.to_body(spin, last.spin);
+    std::copy_n(spin, 3, last.spin);
   }
+  if (course.weak > 0.0) history.add(largest_of_weak(), course.largest2);
   const size_t before = work.detached.size();
   if (df.criteria.tangential == Criteria::INTEGRATE)
     integrate(df, attached, work);
@@ -444,8 +462,11 @@ bool Collision::end(const DetachmentFunctions &df, const double *spin, uint64_t 
 
 void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint64_t *attached, Workspace &work)
 {
-  const double dv[3] = {-last.impulse[0], -last.impulse[1], -last.impulse[2]};
-  const double *spin0 = course.spin0, *spin = last.spin;
+  double dv[3], spin0[3], spin[3];    // in the frame of first contact
+  course.frame.to_body(last.impulse, dv);
+  course.frame.to_body(course.spin0, spin0);
+  course.frame.to_body(last.spin, spin);
+  for (double &x : dv) x = -x;
   const double fastest = std::sqrt(dot(dv, dv)) + df.reach * (std::sqrt(dot(spin0, spin0)) + 2.0 * std::sqrt(dot(spin, spin)));
   if (fastest * fastest <= df.slow2) return;
   if (start.empty()) start.assign(attached, attached + df.words());
@@ -483,7 +504,7 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
       if (square(part) <= needed) return;
       double v[3];
       for (int d = 0; d < 3; d++) v[d] = part * slip[d] + surface[d];
-      leave(df, bit, TANGENTIAL, n, v, nullptr, attached, work);
+      leave(df, bit, TANGENTIAL, course.frame, n, v, nullptr, attached, work);
     });
   }
 }
@@ -495,7 +516,10 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
 void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Workspace &work)
 {
   const bool rings = df.damping >= 0.0;
-  const MotionBound bound(record, course.spin0, peak_acceleration(), df.rolling, df.carrier_radius);
+  double spin0[3];
+  course.frame.to_body(course.spin0, spin0);
+  record.turn_to(course.frame);
+  const MotionBound bound(record, spin0, peak_acceleration(), df.rolling, df.carrier_radius);
   if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach))) return;
   if (start.empty()) start.assign(attached, attached + df.words());
 
@@ -503,7 +527,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
   NormalMotion ringing(df.damping);
   int bits[SurfaceMotion::LANES];
   static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
-  const std::vector<Step> followed = steps();
+  const std::vector<Step> followed = steps(spin0);
   const auto run = [&]() {
     double load[SurfaceMotion::LANES];
     for (const Step &step : followed) {
@@ -521,7 +545,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
         n[d] = motion.direction(k, d);
         w[d] = motion.velocity(k, d);
       }
-      leave(df, bits[k], TANGENTIAL, n, w, nullptr, attached, work);
+      leave(df, bits[k], TANGENTIAL, course.frame, n, w, nullptr, attached, work);
     }
     motion.clear();
     ringing.clear();
@@ -543,7 +567,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
       const double radius = site.shell - df.carrier_radius;
       const int lane = motion.grains();
       bits[lane] = bit;
-      motion.add(site.n, site.hold, radius, df.carrier_radius, course.spin0);
+      motion.add(site.n, site.hold, radius, df.carrier_radius, spin0);
       if (rings) {
         constexpr double NONE[3] = {0.0, 0.0, 0.0};
         const double r12 = effective_radius(df.carrier_radius, radius);
@@ -559,14 +583,14 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
    means of this span and the next; contact forces end at 0
 ------------------------------------------------------------------------- */
 
-std::vector<Collision::Step> Collision::steps() const
+std::vector<Collision::Step> Collision::steps(const double *spin0) const
 {
   const std::vector<ImpulseRecord::Span> &spans = record.spans();
   const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;    // a collision of few time steps
   std::vector<Step> found;
   found.reserve(parts * spans.size());
   double force0[3] = {0.0, 0.0, 0.0}, turn0[3];
-  std::copy_n(course.spin0, 3, turn0);
+  std::copy_n(spin0, 3, turn0);
   for (size_t i = 0; i < spans.size(); i++) {
     const bool last = i + 1 == spans.size();
     const ImpulseRecord::Span &span = spans[i], &next = spans[last ? i : i + 1];
@@ -595,9 +619,11 @@ std::vector<Collision::Step> Collision::steps() const
 int Collision::lost_north(const DetachmentFunctions &df, const uint64_t *attached) const
 {
   int lost = 0;
+  double impulse[3];
+  course.frame.to_body(course.impulse, impulse);
   for (size_t patch = 0; patch < start.size(); patch++)
     each_bit(start[patch] & ~attached[patch], [&](int k) {
-      lost += dot(df.sites[static_cast<int>(patch) * PATCH + k].n, course.impulse) > 0.0;
+      lost += dot(df.sites[static_cast<int>(patch) * PATCH + k].n, impulse) > 0.0;
     });
   return lost;
 }

@@ -144,8 +144,10 @@ struct Workspace {
  * acceleration larger than before. What came after its last lively step then does not count. In a bed of carriers this
  * ends the collision where neither a first contact nor a rebound could be told.
  *
- * Vectors come in space and are kept in the frame of first contact, the carrier's axes at the first step, which do not
- * turn with it later. On top of that it keeps how far the carrier has turned since.
+ * It is weak until inertia first can make a grain slide. Most contacts of a bed stay weak: of that time only the sums and
+ * the largest acceleration are kept.
+ *
+ * Vectors come in space. The frame of first contact is the carrier's axes at the first step; it does not turn with them later.
  *
  * In most steps no grain can change, and little is done in the others:
  * - A grain that holds at q holds at lambda q + e too if lambda <= 1 and |e| <= (1 - lambda) c: unloading needs no look.
@@ -182,7 +184,7 @@ class Collision {
 
   /*! Of the steps so far, at rest of those until then */
   double duration() const { return at_rest() ? course.lively.time : course.time; }
-  double peak_acceleration() const;           //!< largest |contact acceleration| so far
+  double peak_acceleration() const;    //!< largest |contact acceleration| so far
   /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin(); where no inertia could make any slide,
    *  those that have met it at the largest acceleration */
   int grains_that(Mode mode, const DetachmentFunctions &functions, const uint64_t *attached) const;
@@ -200,13 +202,16 @@ class Collision {
     double impulse[3];    // contact force/carrier mass, integrated since begin()
     double spin[3];
   };
-  struct Course : Moment {        // up to now
-    Quaternion frame, turn;       // of first contact in space; of the carrier in that frame
+  struct Course : Moment {        // up to now, in space
+    Quaternion frame, now;        // the carrier at first contact, and since it is not weak
     double spin0[3];              // before contact
     double steps;                 // so far
     double burst, lively_end;     // of them, when the present or last lively ones began and ended
     Moment lively;                // at their end
-    double most;                  // largest |g| on any grain, or more
+    double weak;                  // 1 until inertia could make a grain slide, then 0
+    double turned[3];             // angle about which it turned in that time
+    Motion largest;               // of that time, with the angle so far
+    double largest2, largest_turned[3];
     double count[NMODES];         // of the grains that have left, those that had met SLIDING and ROLLING
   } course;
   std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
@@ -234,12 +239,14 @@ class Collision {
     double dt, acceleration[3];     // mean
     double after[3], spin[3];       // acceleration and spin at the end
   };
-  std::vector<Step> steps() const;
+  std::vector<Step> steps(const double *spin0) const;
   // a grain leaves the place where it stuck, or one along the surface
   void leave_place(const DetachmentFunctions &functions, int bit, Mode mode, const Motion &motion, uint64_t *attached,
                    Workspace &work);
-  void leave(const DetachmentFunctions &functions, int bit, Mode mode, const double *direction, const double *velocity,
-             const Motion *now, uint64_t *attached, Workspace &work);
+  void leave(const DetachmentFunctions &functions, int bit, Mode mode, const Quaternion &axes, const double *direction,
+             const double *velocity, const Motion *now, uint64_t *attached, Workspace &work);
+  // the largest of the weak time, along the carrier's axes
+  Motion largest_of_weak() const;
   bool has_met(Mode mode, const DetachmentFunctions &functions, int bit) const;
 };
 

@@ -38,6 +38,17 @@ void ImpulseRecord::add(const double *a, const double *spin, double dt)
 
 /* ---------------------------------------------------------------------- */
 
+void ImpulseRecord::turn_to(const Quaternion &axes)
+{
+  if (axes.is_none()) return;
+  for (Span &span : course) {
+    axes.to_body(span.impulse, span.impulse);
+    axes.to_body(span.turn, span.turn);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
 void ImpulseRecord::merge_neighbours()
 {
   static_assert(MOST % 2 == 0, "spans are merged in pairs");

@@ -5,6 +5,8 @@
 #ifndef DUST_CORE_IMPULSE_RECORD_H
 #define DUST_CORE_IMPULSE_RECORD_H
 
+#include "quaternion.h"
+
 #include <vector>
 
 namespace Dust {
@@ -30,6 +32,9 @@ class ImpulseRecord {
   void add(const double *acceleration, const double *spin, double dt);
 
   const std::vector<Span> &spans() const { return course; }
+
+  /*! What came in space, along the axes of a body */
+  void turn_to(const Quaternion &axes);
 
   // transfer to another rank and restart, as numbers
   int packed_size() const { return course.empty() ? 0 : static_cast<int>(2 + SPAN_SIZE * course.size()); }

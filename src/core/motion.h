@@ -6,6 +6,7 @@
 #define DUST_CORE_MOTION_H
 
 #include "geometry.h"
+#include "quaternion.h"
 
 #include <cmath>
 
@@ -16,6 +17,17 @@ struct Motion {
   double acceleration[3];            //!< a = contact force / mass
   double angular_acceleration[3];    //!< alpha = contact torque / moment of inertia
   double spin[3];                    //!< omega
+
+  /*! The same with its vectors along the axes of a body */
+  Motion along(const Quaternion &axes) const
+  {
+    Motion m = *this;
+    if (!axes.is_none()) axes.to_body(acceleration, m.acceleration);
+    if (!turns()) return m;
+    axes.to_body(angular_acceleration, m.angular_acceleration);
+    axes.to_body(spin, m.spin);
+    return m;
+  }
 
   bool turns() const { return dot(angular_acceleration, angular_acceleration) > 0.0 || dot(spin, spin) > 0.0; }
 

@@ -90,13 +90,13 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
     out.steps = k + 1;
     rests = k - lively > 3 * (lively + 1 - first);
   }
-  // in a weak collision only the step of the largest acceleration counts for what is met
-  bool weak = true;
-  size_t strongest = 0;
-  for (int k = 0; k < out.steps; k++) {
-    const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
-    weak &= size(h.a[k]) + reach * (size(alpha) + dot(spin[k], spin[k])) <= sliding;
-    if (size(h.a[k]) > size(h.a[strongest])) strongest = k;
+  // as long as inertia has not been able to make a grain slide, the collision is weak: of that time the largest
+  // acceleration stands for all, and the angles of its steps are summed
+  int strong = 0, largest_of_weak = 0;
+  for (; strong < out.steps; strong++) {
+    const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[strong];
+    if (size(h.a[strong]) + reach * (size(alpha) + dot(spin[strong], spin[strong])) > sliding) break;
+    if (size(h.a[strong]) > size(h.a[largest_of_weak])) largest_of_weak = strong;
   }
   const size_t last = rests ? lively : h.a.size() - 1;
   Vec dv = {0.0, 0.0, 0.0}, spin1 = rests ? spin[lively] : now, so_far = {0.0, 0.0, 0.0};
@@ -114,16 +114,21 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
     const double fc = pull_off_force(m.gamma, r12), a0 = equilibrium_contact_radius(m.gamma, r12, m.modulus);
     bool attached = true, slid = false, rolled = false;
     double largest = 0.0;
-    Vec n = n0, mid = h.spin;    // spin of the middle of the step before
+    Vec n = n0, mid = h.spin, angle = {0.0, 0.0, 0.0};    // mid: spin of the middle of the step before
     for (int k = 0; attached && k < out.steps; k++) {
       const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
-      if (k > 0) n = turned(n, h.dt * mid);
+      if (k > 0 && k <= strong) {
+        angle = angle + h.dt * mid;
+        n = turned(n0, angle);
+      } else if (k > 0)
+        n = turned(n, h.dt * mid);
       mid = mid + h.dt * alpha;
+      if (k < strong && k != largest_of_weak) continue;
       const Vec r = r_pd * n, f = -mass * (h.a[k] + cross(alpha, r) + cross(spin[k], cross(spin[k], r)));
       const double fn = dot(f, n), ft = size(f - fn * n);
       const bool slides = ft > m.friction * std::fabs(2.0 * fc - fn), rolls = ft * g.radius > std::fabs(fc - fn) * a0;
-      slid |= slides && (!weak || k == static_cast<int>(strongest));
-      rolled |= rolls && (!weak || k == static_cast<int>(strongest));
+      slid |= slides;
+      rolled |= rolls;
       largest = std::max(largest, std::fabs(2.0 * fc - fn));
       int mode = NMODES;
       if (fn > fc) mode = NORMAL;
