@@ -319,13 +319,20 @@ void FixDustDetach::post_force(int /*vflag*/)
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
   if (rotation) turn();
+  const double *const rmass = atom->rmass;
+  const double *torque = rotation && nlocal ? atom->torque[0] : nullptr, *omega = rotation && nlocal ? atom->omega[0] : nullptr;
 
+  const auto squared = [](const double *v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
   for (int i = 0; i < nlocal; i++, f += 3) {
     // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
     uint64_t bits[3];
     std::memcpy(bits, f, sizeof(bits));
     const bool touches = (bits[0] | bits[1] | bits[2]) << 1;
     if (!touches && state[i] <= FREE_FLIGHT) continue;
+    if (touches && state[i] == AT_REST) {    // what most carriers of a bed do
+      const double torque2 = rotation ? squared(torque + 3 * i) : 0.0, spin2 = rotation ? squared(omega + 3 * i) : 0.0;
+      if (!functions->might_move(squared(f), torque2, spin2, stiffen_time * rmass[i])) continue;
+    }
     if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
     if (touches)
       collide(i);
@@ -381,20 +388,10 @@ Dust::Motion FixDustDetach::motion_of(int i) const
   return motion;
 }
 
-bool FixDustDetach::might_move(int i) const
-{
-  const double *f = atom->f[i];
-  const double mass = atom->rmass[i] * stiffen_time;
-  if (!rotation) return functions->might_move(Dust::dot(f, f), 0.0, 0.0, mass);
-  const double *torque = atom->torque[i], *omega = atom->omega[i];
-  return functions->might_move(Dust::dot(f, f), Dust::dot(torque, torque), Dust::dot(omega, omega), mass);
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixDustDetach::collide(int i)
 {
-  if (state[i] == AT_REST && !might_move(i)) return;
   const Dust::Motion motion = motion_of(i);
   if (state[i] == AT_REST && !functions->may_move(motion)) return;
   if (state[i] == FREE_FLIGHT) began[i] = double(update->ntimestep);

@@ -90,7 +90,6 @@ class FixDustDetach : public Fix {
   int start_collision();
   void drop_lost_collisions();
   Dust::Motion motion_of(int) const;
-  bool might_move(int) const;
   static constexpr int TURN_EVERY = 16;
   void turn();
   void collide(int);

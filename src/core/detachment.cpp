@@ -188,6 +188,7 @@ void Collision::begin(const Quaternion &orientation, const double *spin)
   record.clear();
   window.along = -1.0;
   window.width = 1.0e-3;
+  std::fill_n(window.last, 3, 0.0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -269,8 +270,18 @@ void Collision::lift_off(const DetachmentFunctions &df, const Motion &motion, ui
   double along = -dot(a, window.axis);
   const double e[3] = {a[0] + along * window.axis[0], a[1] + along * window.axis[1], a[2] + along * window.axis[2]};
   const double strayed = std::sqrt(dot(e, e)) + df.reach * dot(motion.spin, motion.spin);
+  double jump2 = 0.0;
+  for (int d = 0; d < 3; d++) {
+    jump2 += (a[d] - window.last[d]) * (a[d] - window.last[d]);
+    window.last[d] = a[d];
+  }
   if (along >= 0.0 && along <= window.along && strayed <= window.aside) {
     window.strayed = std::max(window.strayed, strayed);
+  } else if (constexpr double WORTH_IT = 8.0; WORTH_IT * WORTH_IT * jump2 > window_length(df, dot(a, a)) * window_length(df, dot(a, a))) {
+    // large steps, as in a bed of soft carriers: a window would be left before it pays
+    window.along = -1.0;
+    scan(df, motion, attached, work);
+    return;
   } else {
     // twice as wide as needed so far
     if (window.along >= 0.0 && along <= window.along) window.width *= 2.0;
@@ -297,6 +308,20 @@ void Collision::lift_off(const DetachmentFunctions &df, const Motion &motion, ui
   for (int bit : work.leaving) leave_place(df, bit, NORMAL, motion, attached, work);
 }
 
+// those that leave now, and nothing for later
+void Collision::scan(const DetachmentFunctions &df, const Motion &motion, uint64_t *attached, Workspace &work)
+{
+  const double *a = motion.acceleration, spun = df.reach * dot(motion.spin, motion.spin), size = std::sqrt(dot(a, a));
+  for (int p = 0; p < df.words(); p++) {
+    const auto &patch = df.patches[p];
+    if (!attached[p] || size * patch.radius - dot(a, patch.centre) + spun <= patch.least_hold) continue;
+    each_bit(attached[p], [&](int k) {
+      const int bit = p * PATCH + k;
+      if (df.lift(bit, motion) > df.sites[bit].hold) leave_place(df, bit, NORMAL, motion, attached, work);
+    });
+  }
+}
+
 /* ----------------------------------------------------------------------
    window from g on: about 500 grains of 4500 to come, whatever |g|, as the number that holds goes with 1/|g|; those that
    lift off at g itself are leaving
@@ -308,7 +333,7 @@ void Collision::open_window(const DetachmentFunctions &df, const Motion &motion,
   const double *a = motion.acceleration, size = std::sqrt(dot(a, a)), spun = df.reach * dot(motion.spin, motion.spin);
   for (int d = 0; d < 3; d++) window.axis[d] = size > 0.0 ? -a[d] / size : d == 2;
   window.from = size;
-  window.along = size * (1.0 + 0.3 * size / df.least) + 1.0e-3 * df.least;
+  window.along = size + window_length(df, size * size);
   // well below what holds a grain, or grains that feel no lift at all would be candidates
   window.aside = std::min(size * window.width, 0.3 * df.least) + 1.5 * spun;
   window.strayed = spun;
@@ -343,6 +368,11 @@ void Collision::open_window(const DetachmentFunctions &df, const Motion &motion,
 }
 
 /* ---------------------------------------------------------------------- */
+
+double Collision::window_length(const DetachmentFunctions &df, double size2)
+{
+  return 0.3 * size2 / df.least + 1.0e-3 * df.least;
+}
 
 int Collision::Window::step_of(double force) const
 {

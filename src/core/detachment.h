@@ -165,6 +165,7 @@ struct Workspace {
  * - While g stays in a window, no farther than S along an axis and E from it, only those grains can lift off that would
  *   at S with E to help. They are listed by the force along the axis from which each could, and a step of time
  *   sees only the head of that list. A window is opened where g leaves the last one.
+ * - Where a step is too large for that, all grains are asked, by patches.
  * - What spin adds to g_n is at most |r| omega^2: it counts as a part of E.
  * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
  *   holds, g_t + k g_n is a convex function of g, so the motions that the history keeps decide. */
@@ -206,7 +207,7 @@ class Collision {
   void unpack(const double *buf);
 
  private:
-  static constexpr double QUIET = 3.0, WEAK_QUIET = 0.5;
+  static constexpr double QUIET = 3.0, WEAK_QUIET = 0.1;
 
   struct Moment {
     double time;
@@ -235,6 +236,7 @@ class Collision {
     double steps_per_force;
     double strayed;                        // the farthest that g has been from the axis
     double width;                          // E/|g| for the next window: as g strays
+    double last[3];                        // acceleration of the step before
     static constexpr int STEPS = 256;      // from `from` to `along`
     int step_of(double force) const;
     std::vector<Workspace::Candidate> candidates;    // by step
@@ -242,6 +244,8 @@ class Collision {
     std::vector<int> close;                          // could lift off now
   } window;
 
+  static double window_length(const DetachmentFunctions &functions, double size2);
+  void scan(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
   void open_window(const DetachmentFunctions &functions, const Motion &motion, const uint64_t *attached, Workspace &work);
   void lift_off(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
   void check_all(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);

@@ -90,7 +90,7 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
     }
     peak = std::max(peak, size(h.a[k]));
     out.steps = k + 1;
-    rests = k - lively > (weak ? 0.5 : 3.0) * (lively + 1 - first);
+    rests = k - lively > (weak ? 0.1 : 3.0) * (lively + 1 - first);
   }
   // as long as inertia has not been able to make a grain slide, the collision is weak: of that time the largest
   // acceleration stands for all, and the angles of its steps are summed

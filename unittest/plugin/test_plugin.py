@@ -127,9 +127,10 @@ def test_same_numbers_as_compiled_in(tmp_path, wall):
 STATE = """write_dump all custom state id x y z vx vy vz omegax omegay omegaz fx fy fz &
                 modify format float %.17g sort id
 """
-# few grains until the carrier has left the wall; few carriers for a short time
+# resolved runs of few grains, until the carriers have left what they hit; few carriers for a short time
 SHORTER = {
     "in.impact.resolved": "-var coverage 0.03 -var limit 6e-6 -var dump grains",
+    "in.collision.resolved": "-var coverage 0.02 -var limit 7e-6 -var dump grains",
     "in.drum": "-var carriers 200 -var drum 20e-3 -var lifter 1e-3 -var turns 0.02 -var settle 5e-3 -var dump carriers",
     "in.drop": "-var carriers 60 -var tube 8e-3 -var settle 0.02 -var rest 2e-4 -var splash 2e-3 -var field field",
     "in.pour": "-var carriers 100 -var time 0.03 -var dump carriers",
@@ -154,11 +155,73 @@ def test_decks_give_the_same_numbers_in_both(tmp_path, deck):
             [word for i, word in enumerate(row.split()) if i not in times] for row in thermo(result.stdout)
         ]
         files = {file.name: file.read_bytes() for file in sorted(folder.iterdir())}
-        last_words = [line for line in result.stdout.splitlines() if line.startswith("dispersion ratio")]
+        lines = result.stdout.splitlines()
+        last_words = [line for line in lines if re.match("dispersion ratio|carrier|grains off", line)]
         produced.append((rows, last_words, files))
     assert len(produced[0][0]) > 1
     assert "state" in produced[0][2]
     assert produced[0] == produced[1]
+
+
+@pytest.mark.parametrize(
+    "deck, variable, value, range",
+    [
+        (deck.name, *wrong)
+        for deck in DECKS
+        for wrong in (
+            ("speed", "0", "above 0"),
+            ("angle", "91", "at most 90"),
+            ("offset", "1", "below 1"),
+            ("offset", "-0.1", "at least 0"),
+            ("sigma_g", "0.9", "1"),
+            ("grain_contacts", "maybe", "yes or no"),
+            ("timestep", "0", "above 0"),
+            ("limit", "0", "above 0"),
+        )
+        if re.search(rf'^if "[^"]*\${{{wrong[0]}}}', deck.read_text(), re.MULTILINE)
+    ],
+)
+def test_decks_name_a_wrong_variable(tmp_path, deck, variable, value, range):
+    command = [LMP_DUST, "-in", ROOT / "lammps-inputs" / deck, "-log", "none", "-var", variable, value]
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert result.returncode == 1
+    assert re.search(rf"^{variable} {re.escape(value)} must be .*{range}", result.stdout, re.MULTILINE), result.stdout
+    assert not list(tmp_path.iterdir())
+
+
+SIZES = "-var grain_diameter 15e-6 -var sigma_g 1.5 -var bare 0.4 -var coverage 0.01 -var limit 6e-6"
+
+
+def test_resolved_impact_with_many_sizes_and_spin(tmp_path):
+    """Classes by size, each with contacts of its own; friction takes 5/(2 R) of the spin for the speed it gives."""
+    command = [LMP_DUST, "-in", ROOT / "lammps-inputs/in.impact.resolved", "-log", "none", *SIZES.split()]
+    command += ["-var", "spin", "4000", "-var", "wall_friction", "0.3"]
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert result.returncode == 0, result.stdout
+    assert "WARNING" not in result.stdout
+    off, grains = map(int, re.search(r"^grains off: (\d+) of (\d+)", result.stdout, re.MULTILINE).groups())
+    ratio = float(re.search(r"^dispersion ratio (\S+):", result.stdout, re.MULTILINE)[1])
+    assert 0 < off / grains < ratio < 1    # of the mass more, as large grains leave first
+    vx, spin = map(float, re.search(r"^carrier: (\S+) .* spin (\S+) rad/s", result.stdout, re.MULTILINE).groups())
+    assert 0.9 < vx < 1.1    # 2/7 of 3 m/s if it just rolled on; Mindlin's spring gives some more
+    assert (4000 - spin) * 0.75e-3 * 2 / 5 == pytest.approx(vx, rel=0.005)    # the grains are 0.1 % of the mass
+    classes = re.findall(r"(\d+) atoms in group class\d+", result.stdout)
+    assert len(classes) == 8 and sum(map(int, classes)) == grains
+
+
+def test_resolved_collision_conserves_momentum(tmp_path):
+    command = [LMP_DUST, "-in", ROOT / "lammps-inputs/in.collision.resolved", "-log", "none", "-var", "offset", "0.6"]
+    command += ["-var", "coverage", "0.01", "-var", "limit", "7e-6", "-var", "wall_friction", "0.3"]
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert result.returncode == 0, result.stdout
+    sums = re.search(r"^sum of all momenta in those of a carrier: (.*)", result.stdout, re.MULTILINE)[1]
+    assert all(abs(float(value)) < 1e-12 for value in sums.split())    # round-off of 3000 steps
+    first, second = (
+        [float(word) for word in words]
+        for words in re.findall(r"^carrier \d: (\S+) \S+ (\S+) m/s, spin (\S+)", result.stdout, re.MULTILINE)
+    )
+    # half a turn about y brings one to the other's place
+    assert first == pytest.approx([-second[0], -second[1], second[2]], abs=0.01)
 
 
 def test_stock_lammps_does_not_know_the_sub_model(tmp_path):

@@ -4,6 +4,7 @@
 
 #include "hamaker.h"
 #include "jkr.h"
+#include "quaternion.h"
 
 #include <algorithm>
 #include <array>
@@ -30,16 +31,30 @@ std::string adhesion()
 }
 
 // carriers with few grains each, so that it is quick
-void dusty_carriers(Deck &deck, int n, const char *more = "")
+void dusty_carriers(Deck &deck, int n, const char *more = "", const char *omega = "10 20 30")
 {
   deck("units si\natom_style sphere\natom_modify map array\nboundary p p f\nnewton off\n"
        "region box block -0.004 0.004 -0.002 0.002 -0.002 0.004\ncreate_box 2 box\n"
        "neighbor 15e-6 multi\ncomm_modify mode multi vel yes\nneigh_modify one 10000 page 200000\ntimestep 1e-9");
   for (int k = 0; k < n; k++) deck.carrier(-0.0025 + 0.0025 * k, 0.0, 0.001, 0.1, 0.0, -0.2 * k);
-  deck("group carriers type 1\nset group carriers omega 10 20 30\n"
+  deck("group carriers type 1\nset group carriers omega " + std::string(omega) + "\n"
        "create_dust carriers type 2 texture monolayer 20e-6 coverage 0.01 seed 3 " + std::string(more) +
        "\ngroup grains type 2\npair_style granular\n" + adhesion() + "fix move all nve/sphere\ncompute tied grains dust/carrier carriers\n"
        "thermo_style custom step c_tied\nrun 0 post no");
+}
+
+// of the grains of a texture that a deck has written; takes the file away
+std::vector<std::array<double, 3>> directions(const char *path)
+{
+  std::ifstream file(path);
+  std::string line;
+  std::vector<std::array<double, 3>> n;
+  while (std::getline(file, line)) {
+    std::array<double, 3> v;
+    if (std::sscanf(line.c_str(), "%lf %lf %lf 2.0", &v[0], &v[1], &v[2]) == 3) n.push_back(v);
+  }
+  std::remove(path);
+  return n;
 }
 
 double tied(Deck &deck)
@@ -60,13 +75,7 @@ TEST(CreateDust, GrainsSitAtTheEquilibriumOverlapAndMoveWithTheirCarrier)
   Deck deck;
   dusty_carriers(deck, 2, "write dust_created.txt");
   ASSERT_EQ(lammps_get_natoms(deck.lmp), 2 + 2 * 225.0);
-  std::ifstream file("dust_created.txt");
-  std::string line;
-  std::vector<std::array<double, 3>> n;
-  while (std::getline(file, line)) {
-    std::array<double, 3> v;
-    if (std::sscanf(line.c_str(), "%lf %lf %lf 2.0", &v[0], &v[1], &v[2]) == 3) n.push_back(v);
-  }
+  const auto n = directions("dust_created.txt");
   ASSERT_EQ(n.size(), 225u);
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < 225; i++) {
@@ -83,7 +92,85 @@ TEST(CreateDust, GrainsSitAtTheEquilibriumOverlapAndMoveWithTheirCarrier)
       ASSERT_NEAR(v[1], vp[1] + w[2] * r[0] - w[0] * r[2], 1e-14);
       ASSERT_NEAR(v[2], vp[2] + w[0] * r[1] - w[1] * r[0], 1e-14);
     }
-  std::remove("dust_created.txt");
+}
+
+TEST(CreateDust, RandomOrientationTurnsTheGrainsByTheCarriersID)
+{
+  Deck deck;
+  dusty_carriers(deck, 2, "orientation random 77 write dust_turned.txt");
+  const auto n = directions("dust_turned.txt");
+  ASSERT_EQ(n.size(), 225u);
+  const double distance = 0.76e-3 - Dust::equilibrium_overlap(A0, R12);
+  for (int k = 0; k < 2; k++) {
+    const double *xp = deck.atom("x", k + 1);
+    const Dust::Quaternion turn = Dust::random_orientation(77, k + 1);
+    for (int i = 0; i < 225; i++) {
+      const double *x = deck.atom("x", 3 + 225 * k + i);
+      double wanted[3];
+      turn.to_space(n[i].data(), wanted);
+      for (int d = 0; d < 3; d++) ASSERT_NEAR(x[d] - xp[d], distance * wanted[d], 1e-17);
+    }
+  }
+}
+
+// coverage high enough that some of 2250 grains lie in the default's bare cap, 2.7 % of the sphere
+TEST(CreateDust, RandomOrientationLeavesNoBareCapUnlessToldTo)
+{
+  const auto in_cap = [](const char *more) {
+    Deck deck;
+    deck.box();
+    deck.carrier(0.0, 0.0, 0.001, 0.0, 0.0, 0.0);
+    deck("create_dust all type 2 texture monolayer 20e-6 coverage 0.1 seed 3 write dust_cap.txt " + std::string(more));
+    const auto n = directions("dust_cap.txt");
+    EXPECT_EQ(n.size(), 2250u);
+    return std::count_if(n.begin(), n.end(), [](const std::array<double, 3> &v) { return v[2] < -std::cos(0.33); });
+  };
+  EXPECT_EQ(in_cap(""), 0);
+  EXPECT_EQ(in_cap("orientation same"), 0);
+  EXPECT_EQ(in_cap("orientation random 5 bare 0.33"), 0);
+  EXPECT_GT(in_cap("orientation random 5"), 30);    // of 61 on average
+}
+
+// Centrifugal force F = m omega^2 |r| sin^2 against pull-off force: equal at the equator at 13.2e3 rad/s. It comes all at once,
+// so that the undamped springs along the surface go twice as far as they must: at 9e3, F = 0.46 F_c at the equator, they
+// hold that, 2 F cot < mu (2 F_c - F) at all latitudes.
+TEST(CreateDust, GrainsTurnWithTheirCarrierUntilItThrowsThemOff)
+{
+  {
+    Deck deck;
+    dusty_carriers(deck, 1, "", "0 0 9e3");
+    deck("run 20000 post no");
+    EXPECT_EQ(tied(deck), 225.0);
+    EXPECT_EQ(last_change(deck, 1), -1.0);
+    EXPECT_EQ(last_change(deck, 2), -1.0);
+    // 0.18 rad on, at 6.8 m/s. They swing on their rolling contacts: a force of 0.23 F_c along the surface moves them by 0.59 um
+    // at the angular frequency sqrt(4 F_c R12/(7/5 m R^2)) = 1.94e5/s, which is 0.12 m/s
+    const double *xp = deck.atom("x", 1), *vp = deck.atom("v", 1);
+    for (int grain = 2; grain <= 226; grain++) {
+      const double *x = deck.atom("x", grain), *v = deck.atom("v", grain);
+      EXPECT_NEAR(v[0], vp[0] - 9e3 * (x[1] - xp[1]), 0.12) << grain;
+      EXPECT_NEAR(v[1], vp[1] + 9e3 * (x[0] - xp[0]), 0.12) << grain;
+    }
+  }
+  const double mass = 4.0 / 3.0 * M_PI * 1e-15 * 2700.0, pull_off = 3.0 * M_PI * GAMMA * R12;
+  for (const double spin : {13.0e3, 14.5e3}) {
+    Deck deck;
+    dusty_carriers(deck, 1, "", line("0 0 %.17g", spin).c_str());
+    int surely = 0, hardly = 0;
+    const double *xp = deck.atom("x", 1);
+    for (int grain = 2; grain <= 226; grain++) {
+      const double *x = deck.atom("x", grain);
+      const double arm2 = (x[0] - xp[0]) * (x[0] - xp[0]) + (x[1] - xp[1]) * (x[1] - xp[1]);
+      const double share = mass * spin * spin * arm2 / 0.76e-3 / pull_off;
+      surely += share > 1.02;
+      hardly += share > 1.0;
+    }
+    deck("run 3000 post no");    // others have slid by a few um at most, and a force just above the limit takes its time
+    EXPECT_GE(225.0 - tied(deck), surely);
+    EXPECT_LE(225.0 - tied(deck), hardly);
+    if (spin < 13.2e3) EXPECT_EQ(hardly, 0);
+    else EXPECT_GT(surely, 50);
+  }
 }
 
 TEST(CreateDust, GrainsStayOnAFlyingCarrier)

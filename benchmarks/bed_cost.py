@@ -1,0 +1,147 @@
+"""What fix dust/detach costs in beds: share of the loop time in in.drum, cost per carrier from a thousand to a million of them,
+memory per carrier, and two ranks against one.
+
+    . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts drum,ranks,scaling] [--out FILE]
+
+Segments with and without the fix follow each other in one run, which does not depend on the fix; medians of their times are
+compared. Drum: in.drum, filled, settled and turned for a while. Scaling: a dense granular gas (volume fraction 0.4, 0.7 m/s,
+no losses, contacts softened 1000 times), in which every carrier is in the same state whatever their number. Memory: largest
+resident size of a process with the fix less that of one without.
+Other work on the machine disturbs all this.
+"""
+
+import argparse
+import json
+import os
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from machine import description
+
+ROOT = Path(__file__).resolve().parents[1]
+BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
+LMP = BUILD / "bin/lmp-dust"
+DUST = (
+    "fix dust all dust/detach texture monolayer 20e-6 coverage 0.2 seed 1 orientation random 1 stiffen 1000 "
+    "rows no counts no\n"
+)
+GRAVITY = "fix fall all gravity 9.81 vector 0 0 -1\n"
+GAS = """units si
+atom_style sphere
+boundary p p p
+newton off
+comm_modify vel yes
+lattice sc $(1.5e-3*(PI/6/0.4)^(1/3))
+region box block 0 {x} 0 {y} 0 {z}
+create_box 1 box
+create_atoms 1 box
+set group all diameter 1.5e-3 density 7700
+velocity all set $(0.7*sqrt(3)) 0 0
+variable speed atom 0.7*sqrt(3)*(2*random(0,1,4711)-1)
+velocity all set v_speed v_speed v_speed
+timestep 3e-6
+neighbor 3e-4 bin
+pair_style granular
+pair_coeff * * hertz/material 2.1e8 1.0 0.3 tangential mindlin NULL 0.0 0.3 damping coeff_restitution/limited
+fix move all nve/sphere
+thermo 1000000
+run {warm} post no
+"""
+SIZES = {1_000: (10, 10, 10), 10_000: (20, 25, 20), 100_000: (50, 50, 40), 1_000_000: (100, 100, 100)}
+
+
+def run(deck: str, processes: int = 1) -> tuple[list[float], float]:
+    """Loop times in seconds, and the largest resident size of the process in bytes."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "in.deck").write_text(deck)
+        command = ["/usr/bin/env", str(LMP), "-in", "in.deck", "-log", "none"]
+        if processes > 1:
+            command = ["mpirun", "--bind-to", "core", "-np", str(processes), *command[1:]]
+        environment = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        done = subprocess.run(
+            [sys.executable, "-c", MEASURE, *command], capture_output=True, text=True, cwd=folder, env=environment
+        )
+    if done.returncode:
+        sys.exit(done.stdout[-2000:] + done.stderr[-2000:])
+    times = [float(t) for t in re.findall(r"^Loop time of (\S+)", done.stdout, re.MULTILINE)]
+    return times, 1024.0 * float(done.stderr.split()[-1])
+
+
+# a process of its own, as the size of children is known for all that have ended only
+MEASURE = """
+import resource, subprocess, sys
+status = subprocess.run(sys.argv[1:]).returncode
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, file=sys.stderr)
+sys.exit(status)
+"""
+
+
+def compare(times: list[float], steps: int) -> dict[str, float]:
+    """Of segments with and without the fix in turn."""
+    share = [(a - b) / a for a, b in zip(times[0::2], times[1::2], strict=True)]
+    return {
+        "seconds_per_step_with": statistics.median(times[0::2]) / steps,
+        "seconds_per_step_without": statistics.median(times[1::2]) / steps,
+        "fix_share_of_loop": statistics.median(share),
+        "least_share": min(share),
+        "largest_share": max(share),
+    }
+
+
+def drum(processes: int = 1, pairs: int = 9, steps: int = 500) -> dict[str, float]:
+    text = (ROOT / "lammps-inputs/in.drum").read_text()
+    text = re.sub(r"^plugin load.*\n", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^fix +dust (.*&\n)*.*\n", "", text, flags=re.MULTILINE)
+    text = re.sub(r" f_dust\S*", "", text)
+    deck = text.split("run             ${steps}")[0] + "thermo 1000000\nrun 10000 post no\n"
+    # gravity stands after the fix
+    deck += pairs * f"unfix fall\n{DUST}{GRAVITY}run {steps} post no\nunfix dust\nrun {steps} post no\n"
+    return compare(run(deck, processes)[0][-2 * pairs :], steps)
+
+
+def ranks() -> dict[str, float]:
+    """The drum with the fix: one rank, two ranks, one rank again."""
+    one, two, again = (drum(processes, pairs=3)["seconds_per_step_with"] for processes in (1, 2, 1))
+    return {"one": one, "two": two, "one_again": again, "two_against_one": statistics.mean((one, again)) / two}
+
+
+def scaling() -> dict[str, dict[str, float]]:
+    result = {}
+    for carriers, (x, y, z) in SIZES.items():
+        steps = max(20, 2_000_000 // carriers)
+        warm = 200
+        deck = GAS.format(x=x, y=y, z=z, warm=warm)
+        pairs = 5
+        times, size = run(deck + pairs * f"{DUST}run {steps} post no\nunfix dust\nrun {steps} post no\n")
+        bare = run(deck + f"run {steps} post no\n")[1]
+        row = compare(times[-2 * pairs :], steps)
+        row |= {"bytes_per_carrier_of_lammps": bare / carriers, "bytes_per_carrier_of_the_fix": (size - bare) / carriers,
+                "bytes": size}
+        row |= {f"nanoseconds_per_carrier_and_step_{which}": 1e9 * row.pop(f"seconds_per_step_{which}") / carriers
+                for which in ("with", "without")}
+        result[f"{carriers}"] = row
+        print(carriers, json.dumps(row), flush=True)
+    return result
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--parts", default="drum,ranks,scaling", help="the others keep their results in FILE")
+    parser.add_argument("--out", type=Path)
+    args = parser.parse_args()
+    result: dict = {**description(LMP)}
+    if args.out and args.out.exists():
+        result |= {k: v for k, v in json.loads(args.out.read_text()).items() if k not in result}
+    for part in args.parts.split(","):
+        result[part] = {"drum": drum, "ranks": ranks, "scaling": scaling}[part]()
+        print(part, json.dumps(result[part]), flush=True)
+        if args.out:
+            args.out.write_text(json.dumps(result, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
