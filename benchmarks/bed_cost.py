@@ -29,7 +29,6 @@ DUST = (
     "fix dust all dust/detach texture monolayer 20e-6 coverage 0.2 seed 1 orientation random 1 stiffen 1000 "
     "rows no counts no\n"
 )
-GRAVITY = "fix fall all gravity 9.81 vector 0 0 -1\n"
 GAS = """units si
 atom_style sphere
 boundary p p p
@@ -66,7 +65,7 @@ def run(deck: str, processes: int = 1) -> tuple[list[float], float]:
             [sys.executable, "-c", MEASURE, *command], capture_output=True, text=True, cwd=folder, env=environment
         )
     if done.returncode:
-        sys.exit(done.stdout[-2000:] + done.stderr[-2000:])
+        sys.exit(f"{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
     times = [float(t) for t in re.findall(r"^Loop time of (\S+)", done.stdout, re.MULTILINE)]
     return times, 1024.0 * float(done.stderr.split()[-1])
 
@@ -94,12 +93,13 @@ def compare(times: list[float], steps: int) -> dict[str, float]:
 
 def drum(processes: int = 1, pairs: int = 9, steps: int = 500) -> dict[str, float]:
     text = (ROOT / "lammps-inputs/in.drum").read_text()
-    text = re.sub(r"^plugin load.*\n", "", text, flags=re.MULTILINE)
-    text = re.sub(r"^fix +dust (.*&\n)*.*\n", "", text, flags=re.MULTILINE)
-    text = re.sub(r" f_dust\S*", "", text)
-    deck = text.split("run             ${steps}")[0] + "thermo 1000000\nrun 10000 post no\n"
+    fix = re.search(r"^fix +dust (.*&\n)*.*\n", text, re.MULTILINE)[0]
+    fall = re.findall(r"^fix +fall .*\n", text, re.MULTILINE)[-1]
+    text = re.sub(r"^plugin load.*\n", "", text.replace(fix, ""), flags=re.MULTILINE)
+    deck = text.split('if "$(is_defined(variable,dump))"')[0]
+    deck = re.sub(r" f_dust\S*", "", deck) + "thermo 1000000\nrun 10000 post no\n"
     # gravity stands after the fix
-    deck += pairs * f"unfix fall\n{DUST}{GRAVITY}run {steps} post no\nunfix dust\nrun {steps} post no\n"
+    deck += pairs * f"unfix fall\n{fix}{fall}run {steps} post no\nunfix dust\nrun {steps} post no\n"
     return compare(run(deck, processes)[0][-2 * pairs :], steps)
 
 
