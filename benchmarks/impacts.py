@@ -205,7 +205,7 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
             lines.append(agreement("... with other seeds and half time steps", straight))
         if oblique:
             lines.append(agreement(f"oblique, zeta {damping:g}", oblique))
-    both = {key(pair[0], "grain_damping") for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])}
+    both = {key(pair[1], "grain_damping") for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])}
     same = [pair for pair in pairs(smooth) if pair[0].grain_damping == 1 and key(pair[0], "grain_damping") in both]
     lines.append(agreement("zeta 1, cases of the weaker dampings alone", same))
     rough = pairs(row for row in plain if row.wall_friction == 0.3)
@@ -222,11 +222,18 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     lines = []
     for damping in DAMPINGS:
         damped = [pair for pair in followed if pair[0].grain_damping == damping and pair[0].wall_friction == 0.05]
-        seeds = ", all seeds" if any(pair[0].seed != 1 for pair in damped) else ""
-        lines += [
-            agreement(f"straight, zeta {damping:g}{seeds}", [pair for pair in damped if pair[0].angle == 90]),
-            agreement(f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]),
-        ]
+        straight = [pair for pair in damped if pair[0].angle == 90]
+        listed = [pair for pair in straight if pair[0].seed == 1]
+        lines.append(agreement(f"straight, zeta {damping:g}", listed))
+        if len(listed) < len(straight):
+            lines.append(agreement("... with other seeds", straight))
+        lines.append(agreement(f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]))
+    lines.append(
+        agreement(
+            "zeta 1, cases of the weaker dampings alone",
+            [pair for pair in followed if pair[0].grain_damping == 1 and key(pair[1], "grain_damping") in both],
+        )
+    )
     oblique = [pair for pair in followed if pair[0].angle != 90 and pair[0].wall_friction == 0.3]
     lines.append(agreement("oblique, zeta 1, wall friction 0.3", oblique))
     yield from table(head, lines)
