@@ -6,8 +6,8 @@
     build/venv/bin/python benchmarks/impacts.py compare                                 seconds, from the tables in impacts/
 
 `run` copies the table of each NAME.toml (all by default) to impacts/NAME.csv, with machine and versions in
-impacts/machine.json; with --functions the rows of the resolved runs stay as they are, and so does machine.json. `compare`
-writes impacts/comparison.md and the figures beside it.
+impacts/machine.json; with --functions the rows of the resolved runs stay as they are, as does machine.json. `compare` writes
+impacts/comparison.md and the figures beside it.
 """
 
 import argparse
@@ -379,7 +379,7 @@ def dampings(smooth: list[Result], followed: list[Pair]) -> Iterator[str]:
             "angle",
             "v (m/s)",
             "estimate",
-            *(head for damping in DAMPINGS for head in (f"zeta {damping:g}: integrate", "resolved")),
+            *(cell for damping in DAMPINGS for cell in (f"zeta {damping:g}: integrate", "resolved")),
         ],
         lines,
     )
@@ -447,11 +447,7 @@ def figures(data: dict[str, list[Result]]) -> None:
     scatter(pairs(smooth))
     integrate = [row for part in data.values() for row in part if row.tangential == "integrate" and row.seed == 1]
     ringing(
-        [
-            row
-            for row in plain + integrate
-            if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7
-        ]
+        [row for row in plain + integrate if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7]
     )
 
 

@@ -76,7 +76,8 @@ class Impact:
         seed: of the random texture, 1 to 900000000.
         tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``integrate`` (each grain's own sliding and
             rolling), ``frictionless`` (Eq. 4) or ``off``; resolved runs do not use it.
-        rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs always do.
+        rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs follow it
+            whatever this says.
         timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
             grain's oscillation.
 
