@@ -2,10 +2,12 @@
 
     . build/environment
     build/venv/bin/python benchmarks/impacts.py run --work DIR [--jobs N] [NAME ...]    hours; goes on where it stopped
+    build/venv/bin/python benchmarks/impacts.py run --functions --work DIR [NAME ...]   half a minute
     build/venv/bin/python benchmarks/impacts.py compare                                 seconds, from the tables in impacts/
 
 `run` copies the table of each NAME.toml (all by default) to impacts/NAME.csv, with machine and versions in
-impacts/machine.json. `compare` writes impacts/comparison.md and the figures beside it.
+impacts/machine.json; with --functions the rows of the resolved runs stay as they are, as does machine.json. `compare` writes
+impacts/comparison.md and the figures beside it.
 """
 
 import argparse
@@ -19,6 +21,7 @@ import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -26,7 +29,7 @@ import dustdetach
 import matplotlib.pyplot as plt
 from dustdetach.figures import draw
 from dustdetach.impact import PARAMETERS
-from dustdetach.result import Result, read_csv
+from dustdetach.result import Result, read_csv, write_csv
 from machine import processor
 
 HERE = Path(__file__).resolve().parent / "impacts"
@@ -43,7 +46,7 @@ Pair = tuple[Result, Result]
 
 
 # --- running ---------------------------------------------------------------------------------------------
-def run(names: list[str], work: Path, jobs: int) -> None:
+def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
     machine = {
         "processor": processor(),
         "cores": os.cpu_count(),
@@ -60,7 +63,7 @@ def run(names: list[str], work: Path, jobs: int) -> None:
     }
     for name in names:
         print(name, flush=True)
-        method = "functions" if name == FUNCTIONS_ALONE else "both"
+        method = "functions" if functions or name == FUNCTIONS_ALONE else "both"
         command = [
             "sweep",
             str(HERE / f"{name}.toml"),
@@ -73,7 +76,13 @@ def run(names: list[str], work: Path, jobs: int) -> None:
         ]
         environment = os.environ | {"DUSTDETACH_INPUTS": str(decks(work / "decks", name))}
         subprocess.run([sys.executable, "-m", "dustdetach", *command], env=environment, check=True)
-        shutil.copy(work / name / "results.csv", HERE / f"{name}.csv")
+        kept = HERE / f"{name}.csv"
+        if functions:
+            rows = read_csv(work / name / "results.csv")
+            rows += [row for row in read_csv(kept) if row.method == "resolved"]
+            write_csv(kept, sorted(rows, key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())))
+            continue
+        shutil.copy(work / name / "results.csv", kept)
         (HERE / "machine.json").write_text(json.dumps(machine, indent=1) + "\n")
 
 
@@ -96,7 +105,13 @@ def decks(folder: Path, name: str) -> Path:
 
 # --- reading ---------------------------------------------------------------------------------------------
 def tables() -> dict[str, list[Result]]:
-    return {path.stem: read_csv(path) for path in sorted(HERE.glob("*.csv")) if path.with_suffix(".toml").exists()}
+    paths = [path for path in sorted(HERE.glob("*.csv")) if path.with_suffix(".toml").exists()]
+    return {path.stem: [as_now(row) for row in read_csv(path)] for path in paths}
+
+
+def as_now(row: Result) -> Result:
+    """Resolved runs follow the spin, but tables from before the functions did say False."""
+    return replace(row, rotation=True) if row.method == "resolved" else row
 
 
 def key(row: Result, *without: str) -> tuple:
@@ -190,7 +205,7 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
             lines.append(agreement("... with other seeds and half time steps", straight))
         if oblique:
             lines.append(agreement(f"oblique, zeta {damping:g}", oblique))
-    both = {key(pair[0], "grain_damping") for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])}
+    both = {key(pair[1], "grain_damping") for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])}
     same = [pair for pair in pairs(smooth) if pair[0].grain_damping == 1 and key(pair[0], "grain_damping") in both]
     lines.append(agreement("zeta 1, cases of the weaker dampings alone", same))
     rough = pairs(row for row in plain if row.wall_friction == 0.3)
@@ -201,18 +216,26 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
         )
     )
     yield from table(head, lines)
-    yield "The same with `tangential integrate`, which follows each grain's own slide and roll:"
+    yield "The same with `tangential integrate`, which follows each grain's own slide and roll, and its contact of that zeta:"
     yield ""
     followed = integrated(row for part in data.values() for row in part)
-    oblique = [pair for pair in followed if pair[0].angle != 90]
-    lines = [
+    lines = []
+    for damping in DAMPINGS:
+        damped = [pair for pair in followed if pair[0].grain_damping == damping and pair[0].wall_friction == 0.05]
+        straight = [pair for pair in damped if pair[0].angle == 90]
+        listed = [pair for pair in straight if pair[0].seed == 1]
+        lines.append(agreement(f"straight, zeta {damping:g}", listed))
+        if len(listed) < len(straight):
+            lines.append(agreement("... with other seeds", straight))
+        lines.append(agreement(f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]))
+    lines.append(
         agreement(
-            "straight, zeta 1, all seeds",
-            [pair for pair in followed if pair[0].angle == 90 and pair[0].wall_friction == 0.05],
-        ),
-        agreement("oblique, zeta 1", [pair for pair in oblique if pair[0].wall_friction == 0.05]),
-        agreement("oblique, zeta 1, wall friction 0.3", [pair for pair in oblique if pair[0].wall_friction == 0.3]),
-    ]
+            "zeta 1, cases of the weaker dampings alone",
+            [pair for pair in followed if pair[0].grain_damping == 1 and key(pair[1], "grain_damping") in both],
+        )
+    )
+    oblique = [pair for pair in followed if pair[0].angle != 90 and pair[0].wall_friction == 0.3]
+    lines.append(agreement("oblique, zeta 1, wall friction 0.3", oblique))
     yield from table(head, lines)
 
     yield "## What the paper says"
@@ -226,7 +249,7 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     yield from cases([pair for pair in pairs(smooth) if pair[0].angle != 90 and pair[0].grain_damping == 1])
     yield "## Grain contacts that ring"
     yield ""
-    yield from dampings(smooth)
+    yield from dampings(smooth, followed)
     yield "## Rough wall, friction 0.3"
     yield ""
     yield from cases(rough)
@@ -332,12 +355,13 @@ def cases(compared: list[Pair]) -> Iterator[str]:
     )
 
 
-def dampings(smooth: list[Result]) -> Iterator[str]:
+def dampings(smooth: list[Result], followed: list[Pair]) -> Iterator[str]:
     by_case = defaultdict(dict)
     for row in smooth:
         if row.method == "resolved":
             by_case[key(row, "grain_damping")][row.grain_damping] = row
     functions = {key(row, "grain_damping"): row for row in smooth if row.method == "functions"}
+    integrate = {key(r): f for f, r in followed}
     lines = [
         [
             f"{found[1.0].restitution:g}",
@@ -345,7 +369,7 @@ def dampings(smooth: list[Result]) -> Iterator[str]:
             f"{found[1.0].speed:g}",
             functions[case].dispersion_ratio,
         ]
-        + [found[damping].dispersion_ratio for damping in DAMPINGS]
+        + [row.dispersion_ratio for damping in DAMPINGS for row in (integrate[key(found[damping])], found[damping])]
         for case, found in sorted(by_case.items(), key=lambda item: (item[0][2], -item[0][1], item[0][0]))
         if all(damping in found for damping in DAMPINGS)
     ]
@@ -354,8 +378,8 @@ def dampings(smooth: list[Result]) -> Iterator[str]:
             "e",
             "angle",
             "v (m/s)",
-            "functions",
-            *(f"zeta {damping:g}" for damping in DAMPINGS),
+            "estimate",
+            *(cell for damping in DAMPINGS for cell in (f"zeta {damping:g}: integrate", "resolved")),
         ],
         lines,
     )
@@ -421,7 +445,10 @@ def figures(data: dict[str, list[Result]]) -> None:
     with_curves(smooth, lambda row: row.restitution == 0.7, "figure5")
     with_curves(damped, lambda row: row.wall_friction == 0.3, "friction")
     scatter(pairs(smooth))
-    ringing([row for row in plain if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7])
+    integrate = [row for part in data.values() for row in part if row.tangential == "integrate" and row.seed == 1]
+    ringing(
+        [row for row in plain + integrate if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7]
+    )
 
 
 def scatter(compared: list[Pair]) -> None:
@@ -444,24 +471,23 @@ def scatter(compared: list[Pair]) -> None:
 
 def ringing(rows: list[Result]) -> None:
     figure, axes = plt.subplots(figsize=(5.0, 3.6), layout="constrained")
-    functions = sorted(
-        (row.speed, row.dispersion_ratio) for row in rows if row.method == "functions" and row.grain_damping == 1
-    )
-    axes.plot(*zip(*functions, strict=True), color="0.3", label="functions")
-    for damping, colour, marker in zip(DAMPINGS, ("#0072B2", "#D55E00", "#009E73"), "os^", strict=True):
+
+    def curve(**chosen: object) -> list[list[float]]:
         found = sorted(
             (row.speed, row.dispersion_ratio)
             for row in rows
-            if row.method == "resolved" and row.grain_damping == damping
+            if all(getattr(row, name) == value for name, value in chosen.items())
         )
-        label = f"resolved, $\\zeta$ = {damping:g}"
-        axes.plot(
-            *zip(*found, strict=True),
-            marker,
-            color=colour,
-            markerfacecolor="white",
-            label=label,
-        )
+        return [list(values) for values in zip(*found, strict=True)]
+
+    estimate = curve(method="functions", tangential="estimate", grain_damping=1.0)
+    axes.plot(*estimate, color="0.6", linestyle=":", label="estimate")
+    for damping, colour, marker in zip(DAMPINGS, ("#0072B2", "#D55E00", "#009E73"), "os^", strict=True):
+        label = f"$\\zeta$ = {damping:g}"
+        followed = curve(tangential="integrate", grain_damping=damping)
+        axes.plot(*followed, color=colour, label=f"integrate, {label}")
+        resolved = curve(method="resolved", grain_damping=damping)
+        axes.plot(*resolved, marker, color=colour, markerfacecolor="white", label=f"resolved, {label}")
     axes.set(
         xlabel="Impact speed $v_p$ (m/s)",
         ylabel="Dispersion ratio",
@@ -484,13 +510,14 @@ def main() -> None:
     running.add_argument("names", nargs="*", metavar="NAME")
     running.add_argument("--work", type=Path, required=True, help="folder of the sweeps")
     running.add_argument("--jobs", type=int, default=2)
+    running.add_argument("--functions", action="store_true", help="only them; the resolved rows stay")
     commands.add_parser("compare")
     options = parser.parse_args()
     if options.command == "run":
         known = sorted(path.stem for path in HERE.glob("*.toml"))
         if unknown := [name for name in options.names if name not in known]:
             parser.error(f"{unknown[0]}: no such list of cases; allowed: {', '.join(known)}")
-        run(options.names or known, options.work, options.jobs)
+        run(options.names or known, options.work, options.jobs, options.functions)
     else:
         data = tables()
         (HERE / "comparison.md").write_text("\n".join(comparison(data)))

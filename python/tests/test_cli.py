@@ -62,6 +62,23 @@ def test_json_has_the_keys_of_the_interface_in_order(command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_the_spin_is_followed_unless_told_otherwise(command):
+    # friction spins an oblique carrier up
+    oblique = ("impact", "--speed", "8", "--angle", "60", "--wall-friction", "0.3", "--json")
+    default, followed, ignored = (
+        json.loads(command(*oblique, *option).stdout) for option in ((), ("--rotation",), ("--no-rotation",))
+    )
+    assert (default["rotation"], followed["rotation"], ignored["rotation"]) == (True, True, False)
+    assert default["dispersion_ratio"] == followed["dispersion_ratio"] != ignored["dispersion_ratio"]
+
+
+def test_grain_damping_of_an_impact_by_functions(command):
+    fast = ("impact", "--speed", "12", "--tangential", "integrate", "--json")
+    dead, ringing = (json.loads(command(*fast, *option).stdout) for option in ((), ("--grain-damping", "0.06")))
+    assert (dead["grain_damping"], ringing["grain_damping"]) == (1.0, 0.06)
+    assert ringing["dispersion_ratio"] > dead["dispersion_ratio"]
+
+
 def test_without_json_a_summary(command, tmp_path):
     process = command(*IMPACT)
     assert process.returncode == 0
@@ -121,7 +138,6 @@ def test_a_resolved_impact(command, tmp_path):
         (("--method", "both"), "--method: unknown choice 'both'; allowed: functions, resolved"),
         (("--method", "resolved", "--timestep", "1e-8"), "--timestep: 1e-08 s does not resolve the contact of a grain"),
         (("--method", "resolved", "--grain-diameter", "2e-6"), "in a resolved run at most 100000"),
-        (("--rotation",), "--rotation: following the carrier's spin is not there yet"),
         (("--picture", "carrier.txt"), "--picture: carrier.txt; allowed: a file name that ends in .png"),
         (("--picture", "no/such/carrier.png"), "--picture: there is no folder no/such"),
         (("--colour", "red"), "unrecognized arguments: --colour red"),

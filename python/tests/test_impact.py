@@ -46,7 +46,6 @@ def test_numbers_of_any_kind_become_plain_ones():
         ("seed", 1.5, "whole number"),
         ("tangential", "guess", "estimate, integrate, frictionless, off"),
         ("method", "both", "functions, resolved"),
-        ("rotation", True, "--no-rotation"),
         ("rotation", 1, "not true or false"),
         ("timestep", 0, "above 0 and at most 1e-07 s"),
         ("speed", "4", "not a number"),

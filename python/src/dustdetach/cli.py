@@ -33,7 +33,7 @@ _HELP = {
     "z0": "separation at which van der Waals force and pull-off force are equal, m",
     "friction": "mu_f of grain and carrier",
     "wall_friction": "mu of carrier and wall",
-    "grain_damping": "damping ratio of a grain's contact; resolved runs only",
+    "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential integrate",
     "seed": "of the random texture",
     "tangential": "tangential lift-off: " + ", ".join(TANGENTIAL),
     "timestep": "s",
@@ -85,7 +85,10 @@ def _parser() -> argparse.ArgumentParser:
     for name in _HELP:
         _add_parameter(impact, name, required=name == "speed")
     impact.add_argument(
-        "--rotation", action=argparse.BooleanOptionalAction, default=False, help="follow the carrier's spin"
+        "--rotation",
+        action=argparse.BooleanOptionalAction,
+        default=argparse.SUPPRESS,
+        help="whether the functions follow the carrier's spin; resolved runs always do (--rotation)",
     )
     impact.add_argument("--json", action="store_true", help="print one JSON object")
     impact.add_argument(

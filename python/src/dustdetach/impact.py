@@ -71,11 +71,13 @@ class Impact:
         z0: separation at which the van der Waals force equals the pull-off force, m, above 0.
         friction: mu_f between grain and carrier, from 0 to 10.
         wall_friction: mu between carrier and wall, from 0 to 10.
-        grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0; only resolved runs use it.
+        grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0: below 1 grains ring, and more
+            of them leave; resolved runs and ``tangential="integrate"`` use it.
         seed: of the random texture, 1 to 900000000.
         tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``integrate`` (each grain's own sliding and
             rolling), ``frictionless`` (Eq. 4) or ``off``; resolved runs do not use it.
-        rotation: whether the carrier's spin is followed; ``False``, as in the paper.
+        rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs follow it
+            whatever this says.
         timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
             grain's oscillation.
 
@@ -98,7 +100,7 @@ class Impact:
     grain_damping: float = 1.0
     seed: int = 1
     tangential: str = "estimate"
-    rotation: bool = False
+    rotation: bool = True
     timestep: float = 1e-9
 
     def __post_init__(self) -> None:
@@ -109,8 +111,6 @@ class Impact:
 
         _one_of("method", self.method, METHODS)
         _one_of("tangential", self.tangential, TANGENTIAL)
-        if self.rotation:
-            raise InvalidInput("--rotation: following the carrier's spin is not there yet; allowed: --no-rotation")
 
         _above("speed", self.speed, 0.0, 100.0, "m/s")
         _above("angle", self.angle, 0.0, 90.0, "degrees")

@@ -78,6 +78,10 @@ def run(
     started = time.perf_counter()
     parameters = asdict(impact)
     variables = {name: parameters[name] for name in _VARIABLES_OF[impact.method]}
+    if impact.method == "functions":
+        variables["rotation"] = "yes" if impact.rotation else "no"
+        if impact.tangential == "integrate":
+            variables["grain_damping"] = impact.grain_damping
     # quoted for the deck's command in which the name ends up
     if events is not None:
         variables["events"] = f'"{events}"'
