@@ -30,6 +30,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 static constexpr int FIXED = 1;    // in Domain::boundary
+static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grains is not in the carrier's yet
 
 /* ---------------------------------------------------------------------- */
 
@@ -228,6 +229,7 @@ void FixDustDetach::init()
     if (!inserts)
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
+  weigh();
 }
 
 /* ----------------------------------------------------------------------
@@ -281,7 +283,10 @@ void FixDustDetach::setup_post_neighbor()
 void FixDustDetach::post_neighbor()
 {
   if (!functions && (carrier_radius = options.carrier_radius(igroup)) > 0.0) build();
-  if (newcomers) adopt();
+  if (newcomers) {
+    adopt();
+    weigh();
+  }
   drop_lost_collisions();
 }
 
@@ -305,7 +310,18 @@ void FixDustDetach::adopt()
     array_atom[i][ATTACHED] = functions->grains();
     mine.initial += functions->grains();
     if (orientation) orientation[i] = options.orientation(atom->tag[i]);
-    if (lose_mass) atom->rmass[i] += functions->grains() * functions->mean_mass();
+    began[i] = NOT_WEIGHED;
+  }
+}
+
+// not yet where the fix is made: a restart file may bring carriers that have lost some already
+void FixDustDetach::weigh()
+{
+  if (!lose_mass || !functions) return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (state[i] == NO_CARRIER || began[i] != NOT_WEIGHED) continue;
+    began[i] = 0.0;
+    atom->rmass[i] += functions->grains() * functions->mean_mass();
   }
 }
 

@@ -83,6 +83,7 @@ class FixDustDetach : public Fix {
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
   bool newcomers;         // atoms were added that may be carriers
   void adopt();
+  void weigh();
 
   // collisions under way on this rank
   std::vector<Dust::Collision> collisions;
