@@ -64,15 +64,6 @@ double DustOptions::positive(int iarg, int k, char **arg) const
   return value;
 }
 
-// keyword of which a later version will know more
-void DustOptions::only(int iarg, char **arg, const char *allowed) const
-{
-  if (strcmp(arg[iarg + 1], allowed) != 0)
-    error->all(FLERR, "{} {} {} is not available yet: use {} {}", command, arg[iarg], arg[iarg + 1], arg[iarg], allowed);
-}
-
-/* ---------------------------------------------------------------------- */
-
 int DustOptions::parse(int iarg, int narg, char **arg)
 {
   const std::string key = arg[iarg];

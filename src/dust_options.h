@@ -30,7 +30,6 @@ class DustOptions : protected Pointers {
   double number(int iarg, int k, char **arg) const;
   double positive(int iarg, int k, char **arg) const;
   void check(int iarg, int k, char **arg, bool ok, const char *range) const;
-  void only(int iarg, char **arg, const char *allowed) const;
 
   // diameter of the carriers of a group on all ranks, halved; 0 if there are none, an error if they differ
   double carrier_radius(int igroup) const;

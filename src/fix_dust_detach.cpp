@@ -30,6 +30,13 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 static constexpr int FIXED = 1;    // in Domain::boundary
+
+static double distance2(const double *a, const double *b)
+{
+  const double e[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  return Dust::dot(e, e);
+}
+
 static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grains is not in the carrier's yet
 
 /* ---------------------------------------------------------------------- */
@@ -165,6 +172,7 @@ void FixDustDetach::parse(int narg, char **arg)
     error->all(FLERR, "Fix dust/detach emit {} needs mass yes: grains bring the mass that their carriers lose", emit);
   if (emit && igroup == 0)
     error->all(FLERR, "Fix dust/detach emit {} needs a group of carriers without the emitted grains, not group all", emit);
+  if (emit && domain->triclinic) error->all(FLERR, "Fix dust/detach emit {} needs an orthogonal box", emit);
   if (emit) lose_mass = true;
   work.locate = keep_rows || lose_mass;
 }
@@ -414,7 +422,8 @@ void FixDustDetach::collide(int i)
   if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
   if (collision.step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
-  if (!collision.weak() && collision.packed_size() > room) make_room(collision.packed_size());
+  const bool grows = !collision.weak() || criteria.tangential == Dust::Criteria::INTEGRATE;
+  if (grows && collision.packed_size() > room) make_room(collision.packed_size());
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
@@ -426,6 +435,7 @@ void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
   Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
   if (rotation) now.turn_by(angle[i], 1.0);
   collisions[state[i]].begin(now, motion.spin);
+  if (collisions[state[i]].packed_size() > room) make_room(collisions[state[i]].packed_size());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -629,7 +639,7 @@ double FixDustDetach::memory_usage()
   const double words = functions ? functions->words() : 0;
   double bytes = double(atom->nmax) * (sizeof(int) + words * sizeof(uint64_t) + (NCOLUMNS + 2 + orientation_size()) * sizeof(double));
   for (const Dust::Collision &collision : collisions) bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
-  return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]);
+  return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]) + losses.capacity() * sizeof(Loss);
 }
 
 /* ----------------------------------------------------------------------
@@ -663,7 +673,11 @@ void FixDustDetach::shed()
     for (auto loss = range.first; loss != range.second; ++loss) carrier[loss - all.begin()] = i;
   }
   std::vector<char> leaves(all.size(), 0);
-  if (emit) find_room(all, carrier, leaves);
+  if (emit) {
+    find_room(all, carrier, leaves);
+    MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_CHAR, MPI_MAX, world);
+    share_room(all, leaves);
+  }
 
   for (size_t first = 0, last; first < all.size(); first = last) {
     const int i = carrier[first];
@@ -680,7 +694,6 @@ void FixDustDetach::shed()
     atom->rmass[i] = rest;
   }
   if (!emit) return;
-  MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_CHAR, MPI_MAX, world);
   tagint tag = DustAtoms::highest_tag(lmp);
   DustAtoms atoms(lmp);
   for (size_t k = 0; k < all.size(); k++) {
@@ -718,56 +731,73 @@ std::vector<FixDustDetach::Loss> FixDustDetach::all_losses() const
 
 void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<int> &carrier, std::vector<char> &leaves) const
 {
-  struct Sphere {
-    double x[3], radius;
-    bool touches(const double *y, double r) const
-    {
-      const double e[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
-      return Dust::dot(e, e) < (radius + r) * (radius + r);
-    }
-  };
-  std::vector<Sphere> near, placed;
+  std::vector<int> near;    // atoms that some grain of a carrier could touch
   for (size_t first = 0, last; first < all.size(); first = last) {
     for (last = first + 1; last < all.size() && carrier[last] == carrier[first]; last++) {}
     const int i = carrier[first];
     if (i < 0) continue;
 
-    // places next to the carrier, whose image may have changed
     const double *centre = atom->x[i];
-    std::vector<Sphere> grains(last - first);
+    std::vector<std::array<double, 3>> places(last - first);    // next to the carrier, whose image may have changed
     double reach = 0.0;
     for (size_t k = first; k < last; k++) {
-      Sphere &grain = grains[k - first];
-      double x[3];
+      double x[3], *place = places[k - first].data();
       place_of(all[k], x);
-      domain->closest_image(centre, x, grain.x);
-      grain.radius = all[k][LOSS_RADIUS];
-      const double e[3] = {grain.x[0] - centre[0], grain.x[1] - centre[1], grain.x[2] - centre[2]};
-      reach = std::max(reach, std::sqrt(Dust::dot(e, e)) + grain.radius);
+      domain->closest_image(centre, x, place);
+      reach = std::max(reach, std::sqrt(distance2(centre, place)) + all[k][LOSS_RADIUS]);
     }
+    const auto touches = [&](int j, const double *x, double radius) {
+      const double sum = atom->radius[j] + radius;
+      return distance2(atom->x[j], x) < sum * sum;
+    };
     near.clear();
-    for (int j = 0; j < atom->nlocal + atom->nghost; j++) {
-      const double *x = atom->x[j];
-      if (atom->tag[j] != atom->tag[i] && Sphere{{x[0], x[1], x[2]}, atom->radius[j]}.touches(centre, reach))
-        near.push_back({{x[0], x[1], x[2]}, atom->radius[j]});
-    }
-    for (const Sphere &sphere : placed)
-      if (sphere.touches(centre, reach)) near.push_back(sphere);
+    for (int j = 0; j < atom->nlocal + atom->nghost; j++)
+      if (atom->tag[j] != atom->tag[i] && touches(j, centre, reach)) near.push_back(j);
 
     for (size_t k = first; k < last; k++) {
-      const Sphere &grain = grains[k - first];
-      bool room = true;
+      const double *x = places[k - first].data();
+      bool room = std::none_of(near.begin(), near.end(), [&](int j) { return touches(j, x, all[k][LOSS_RADIUS]); });
       for (int d = 0; d < 3; d++) {
         const bool fixed_low = domain->boundary[d][0] == FIXED, fixed_high = domain->boundary[d][1] == FIXED;
-        room = room && !(fixed_low && grain.x[d] < domain->boxlo[d]) && !(fixed_high && grain.x[d] > domain->boxhi[d]);
+        room = room && !(fixed_low && x[d] < domain->boxlo[d]) && !(fixed_high && x[d] > domain->boxhi[d]);
       }
-      for (const Sphere &sphere : near) room = room && !sphere.touches(grain.x, grain.radius);
-      if (!room) continue;
-      leaves[k] = 1;
-      near.push_back(grain);
-      placed.push_back(grain);
+      leaves[k] = room;
     }
   }
+}
+
+/* ----------------------------------------------------------------------
+   of grains that would overlap each other the first stays in the list: the same on all ranks. Neighbours along x.
+------------------------------------------------------------------------- */
+
+void FixDustDetach::share_room(const std::vector<Loss> &all, std::vector<char> &leaves) const
+{
+  struct Place {
+    double x[3];
+    size_t number;
+  };
+  std::vector<Place> places;
+  double largest = 0.0;
+  for (size_t k = 0; k < all.size(); k++) {
+    if (!leaves[k]) continue;
+    Place place;
+    place.number = k;
+    place_of(all[k], place.x);
+    domain->remap(place.x);
+    places.push_back(place);
+    largest = std::max(largest, all[k][LOSS_RADIUS]);
+  }
+  std::sort(places.begin(), places.end(), [](const Place &a, const Place &b) { return a.x[0] < b.x[0]; });
+  std::vector<std::pair<size_t, size_t>> pairs;    // that overlap, the first first
+  for (size_t a = 0; a < places.size(); a++)
+    for (size_t b = a + 1; b < places.size() && places[b].x[0] - places[a].x[0] < 2.0 * largest; b++) {
+      const size_t i = places[a].number, j = places[b].number;
+      const double sum = all[i][LOSS_RADIUS] + all[j][LOSS_RADIUS];
+      if (distance2(places[a].x, places[b].x) < sum * sum) pairs.emplace_back(std::minmax(i, j));
+    }
+  std::sort(pairs.begin(), pairs.end());
+  for (const auto &[first, second] : pairs)
+    if (leaves[first]) leaves[second] = 0;
 }
 
 /* ----------------------------------------------------------------------

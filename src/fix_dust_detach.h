@@ -133,6 +133,7 @@ class FixDustDetach : public Fix {
   std::vector<Loss> all_losses() const;
   void place_of(const Loss &, double *) const;
   void find_room(const std::vector<Loss> &, const std::vector<int> &, std::vector<char> &) const;
+  void share_room(const std::vector<Loss> &, std::vector<char> &) const;
 
   // contacts of the deck that are softer than `stiffen` says
   double too_soft;    // factor of the inertia, or 1

@@ -153,7 +153,7 @@ struct Workspace {
  * in the paper. Or it comes to rest: for QUIET times as long as it took, no inertia could move any grain, nor was the
  * acceleration larger than before. What came after its last lively step then does not count. In a bed of carriers this
  * ends the collision where neither a first contact nor a rebound could be told. Damped Hertz contacts with restitution
- * from 0.3 on rebound before, if inertia could make a grain slide at all.
+ * from 0.3 on (0.1) rebound before, if their peak is 1.01 (1.6) times what can make a grain slide.
  *
  * It is weak until inertia first can make a grain slide. Most contacts of a bed stay weak: of that time only the sums and
  * the largest acceleration are kept, and it rests after WEAK_QUIET times as long as it took.
