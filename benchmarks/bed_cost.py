@@ -4,7 +4,7 @@ memory per carrier, and two ranks against one.
     . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts drum,ranks,scaling] [--out FILE]
 
 Segments with and without the fix follow each other in one run, which does not depend on the fix; medians of their times are
-compared, in processor time. Drum: in.drum, filled, settled and turned for a while. Scaling: a dense granular gas (volume fraction 0.4, 0.7 m/s,
+compared, in processor time. Drum: in.drum, filled, settled and turned for a while. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a direction,
 no losses, contacts softened 1000 times), in which every carrier is in the same state whatever their number. Memory: largest
 resident size of a process with the fix less that of one without.
 Other work on the machine disturbs all this.
@@ -39,8 +39,7 @@ region box block 0 {x} 0 {y} 0 {z}
 create_box 1 box
 create_atoms 1 box
 set group all diameter 1.5e-3 density 7700
-velocity all set $(0.7*sqrt(3)) 0 0
-variable speed atom 0.7*sqrt(3)*(2*random(0,1,4711)-1)
+variable speed atom 0.1*sqrt(3)*(2*random(0,1,4711)-1)
 velocity all set v_speed v_speed v_speed
 timestep 3e-6
 neighbor 3e-4 bin
