@@ -189,6 +189,7 @@ void Collision::begin(const Quaternion &orientation, const double *spin)
   window.along = -1.0;
   window.width = 1.0e-3;
   std::fill_n(window.last, 3, 0.0);
+  std::fill_n(window.spin, 3, 0.0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -269,7 +270,10 @@ void Collision::lift_off(const DetachmentFunctions &df, const Motion &motion, ui
   const double *a = motion.acceleration;
   double along = -dot(a, window.axis);
   const double e[3] = {a[0] + along * window.axis[0], a[1] + along * window.axis[1], a[2] + along * window.axis[2]};
-  const double strayed = std::sqrt(dot(e, e)) + df.reach * dot(motion.spin, motion.spin);
+  // omega^2 - (omega.n)^2 changes by at most |change of omega| |sum of both|
+  const double *w = motion.spin, *v = window.spin;
+  const double change[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]}, sum = std::sqrt(dot(w, w)) + std::sqrt(dot(v, v));
+  const double strayed = std::sqrt(dot(e, e)) + df.reach * std::sqrt(dot(change, change)) * sum;
   double jump2 = 0.0;
   for (int d = 0; d < 3; d++) {
     jump2 += (a[d] - window.last[d]) * (a[d] - window.last[d]);
@@ -277,7 +281,7 @@ void Collision::lift_off(const DetachmentFunctions &df, const Motion &motion, ui
   }
   if (along >= 0.0 && along <= window.along && strayed <= window.aside) {
     window.strayed = std::max(window.strayed, strayed);
-  } else if (constexpr double WORTH_IT = 8.0; WORTH_IT * WORTH_IT * jump2 > window_length(df, dot(a, a)) * window_length(df, dot(a, a))) {
+  } else if (constexpr double WORTH_IT = 2.0; WORTH_IT * WORTH_IT * jump2 > window_length(df, dot(a, a)) * window_length(df, dot(a, a))) {
     // large steps, as in a bed of soft carriers: a window would be left before it pays
     window.along = -1.0;
     scan(df, motion, attached, work);
@@ -335,8 +339,9 @@ void Collision::open_window(const DetachmentFunctions &df, const Motion &motion,
   window.from = size;
   window.along = size + window_length(df, size * size);
   // well below what holds a grain, or grains that feel no lift at all would be candidates
-  window.aside = std::min(size * window.width, 0.3 * df.least) + 1.5 * spun;
-  window.strayed = spun;
+  window.aside = std::min(size * window.width, 0.3 * df.least);
+  window.strayed = 0.0;
+  std::copy_n(motion.spin, 3, window.spin);
   window.steps_per_force = Window::STEPS / (window.along - window.from);
   window.close.clear();
   window.next = 0;
@@ -346,13 +351,14 @@ void Collision::open_window(const DetachmentFunctions &df, const Motion &motion,
   int count[Window::STEPS + 1] = {};
   for (int p = 0; p < df.words(); p++) {
     const auto &patch = df.patches[p];
-    if (!attached[p] || most * std::max(0.0, dot(window.axis, patch.centre) + patch.radius) + aside <= patch.least_hold)
+    if (!attached[p] || most * std::max(0.0, dot(window.axis, patch.centre) + patch.radius) + aside + spun <= patch.least_hold)
       continue;
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
-      const double u = dot(window.axis, df.sites[bit].n), hold = df.sites[bit].hold;
+      const auto &site = df.sites[bit];
+      const double u = dot(window.axis, site.n), hold = site.hold - site.shell * motion.centrifugal(site.n);    // what is left
       if (most * std::max(0.0, u) <= hold - aside) return;
-      if (df.lift(bit, motion) > hold) {
+      if (df.lift(bit, motion) > site.hold) {
         work.leaving.push_back(bit);
         return;
       }

@@ -166,7 +166,7 @@ struct Workspace {
  *   at S with E to help. They are listed by the force along the axis from which each could, and a step of time
  *   sees only the head of that list. A window is opened where g leaves the last one.
  * - Where a step is too large for that, all grains are asked, by patches.
- * - What spin adds to g_n is at most |r| omega^2: it counts as a part of E.
+ * - A window has what spin adds to g_n where it was opened; what that changes by later counts as a part of E.
  * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
  *   holds, g_t + k g_n is a convex function of g, so the motions that the history keeps decide. */
 class Collision {
@@ -237,6 +237,7 @@ class Collision {
     double strayed;                        // the farthest that g has been from the axis
     double width;                          // E/|g| for the next window: as g strays
     double last[3];                        // acceleration of the step before
+    double spin[3];                        // where it was opened: the lists have its part of the force
     static constexpr int STEPS = 256;      // from `from` to `along`
     int step_of(double force) const;
     std::vector<Workspace::Candidate> candidates;    // by step
