@@ -445,16 +445,16 @@ void FixDustDetach::finish_collision(int i, int next)
   Dust::Collision &collision = collisions[state[i]];
   const Dust::Motion motion = motion_of(i);
   if (collision.end(*functions, motion.spin, attached[i], work)) record(i);
-  array_atom[i][PEAK_ACCELERATION] = collision.peak_acceleration();
+  const double peak = collision.peak_acceleration();
+  array_atom[i][PEAK_ACCELERATION] = peak;
   mine.collisions += 1.0;
   mine.north += collision.lost_north(*functions, attached[i]);
   mine.sliding += collision.grains_that(Dust::SLIDING, *functions, attached[i]);
   mine.rolling += collision.grains_that(Dust::ROLLING, *functions, attached[i]);
-  idle.push_back(state[i]);
+  retire(state[i]);
   state[i] = next;
   if (next == FREE_FLIGHT) leave_contact(i);
 
-  const double peak = collision.peak_acceleration();
   if (!warned && peak <= functions->least_hold() && peak * too_soft > functions->least_hold()) {
     warned = true;
     error->warning(FLERR, "Fix dust/detach {}: grains of carrier {} stay only because its contacts are softer than the carrier "
@@ -478,7 +478,7 @@ void FixDustDetach::spin_off(int i)
   if (!functions->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
   begin_collision(i, motion);
   if (collisions[state[i]].step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
-  idle.push_back(state[i]);
+  retire(state[i]);
   state[i] = FREE_FLIGHT;
 }
 
@@ -508,7 +508,13 @@ void FixDustDetach::drop_lost_collisions()
     if (state[i] >= 0) used[state[i]] = true;
   idle.clear();
   for (size_t k = 0; k < used.size(); k++)
-    if (!used[k]) idle.push_back(static_cast<int>(k));
+    if (!used[k]) retire(static_cast<int>(k));
+}
+
+void FixDustDetach::retire(int index)
+{
+  collisions[index].release(work);
+  idle.push_back(index);
 }
 
 /* ----------------------------------------------------------------------

@@ -90,6 +90,7 @@ class FixDustDetach : public Fix {
   std::vector<int> idle;
   int start_collision();
   void drop_lost_collisions();
+  void retire(int);
   Dust::Motion motion_of(int) const;
   static constexpr int TURN_EVERY = 16;
   void turn();

@@ -9,27 +9,13 @@
 
 using namespace Dust;
 
-Split Dust::split(const double *p, const double *q, double q2)
-{
-  const double lambda = dot(p, q) / q2;
-  const double e[3] = {p[0] - lambda * q[0], p[1] - lambda * q[1], p[2] - lambda * q[2]};
-  return {lambda, dot(e, e)};
-}
-
-bool Dust::is_between(const Split &s, double q2)
-{
-  constexpr double ROUND_OFF2 = 1.0e-24;
-  return s.lambda >= 0.0 && s.lambda <= 1.0 && s.aside2 <= ROUND_OFF2 * q2;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void AccelerationHistory::clear()
 {
   motions.clear();
   levels.clear();
   in_tree = 0;
   largest = 0;
+  turned = false;
   size2_of_peak = 0.0;
 }
 
@@ -37,20 +23,21 @@ void AccelerationHistory::clear()
    a motion matters to no grain if it lies between none and another one: g is linear in it, but for the spin
 ------------------------------------------------------------------------- */
 
-void AccelerationHistory::add(const Motion &motion, double size2)
+void AccelerationHistory::add(const Motion &motion, double size2, bool turns)
 {
-  const bool turns = motion.turns();
-  const auto covers = [](const Motion &q, double q2, const Motion &p) {
-    return is_between(split(p.acceleration, q.acceleration, q2), q2) && !p.turns() && !q.turns();
+  turned = turned || turns;
+  const auto covers = [this](const Motion &q, double q2, const Motion &p) {
+    return is_between(split(p.acceleration, q.acceleration, q2), q2) && !(turned && (p.turns() || q.turns()));
   };
   size_t n = motions.size();
-  if (n && !turns && size2 <= size2_of_peak && covers(peak(), size2_of_peak, motion)) return;
-  if (n > largest + 1 && !turns) {
-    const Motion &last = motions[n - 1];
-    if (covers(last, dot(last.acceleration, last.acceleration), motion)) return;
-  }
-  if (!turns)
+  if (!turns) {
+    if (n && size2 <= size2_of_peak && covers(peak(), size2_of_peak, motion)) return;
+    if (n > largest + 1) {
+      const Motion &last = motions[n - 1];
+      if (covers(last, dot(last.acceleration, last.acceleration), motion)) return;
+    }
     while (n && covers(motion, size2, motions[n - 1])) n--;
+  }
   motions.resize(n);
   motions.push_back(motion);
   in_tree = std::min(in_tree, n);
@@ -65,10 +52,38 @@ void AccelerationHistory::add(const Motion &motion, double size2)
 AccelerationHistory::Sphere AccelerationHistory::member(size_t level, size_t i) const
 {
   if (level > 0) return levels[level - 1][i];
-  const Motion &m = motions[i];
-  const double *a = m.acceleration;
-  return {{a[0], a[1], a[2]}, 0.0, m.turning()};
+  return {motions[i], 0.0, 0.0};
 }
+
+AccelerationHistory::Sphere AccelerationHistory::around(size_t level, size_t first) const
+{
+  Sphere s = {};
+  for (size_t i = 0; i < BRANCH; i++) {
+    const Motion m = member(level, first + i).centre;
+    for (int d = 0; d < 3; d++) {
+      s.centre.acceleration[d] += m.acceleration[d] / BRANCH;
+      s.centre.angular_acceleration[d] += m.angular_acceleration[d] / BRANCH;
+      s.centre.spin[d] += m.spin[d] / BRANCH;
+    }
+  }
+  const auto length = [](const double *a, const double *b, double sign) {
+    const double r[3] = {a[0] + sign * b[0], a[1] + sign * b[1], a[2] + sign * b[2]};
+    return std::sqrt(dot(r, r));
+  };
+  for (size_t i = 0; i < BRANCH; i++) {
+    const Sphere part = member(level, first + i);
+    const Motion &m = part.centre, &c = s.centre;
+    // omega x (omega x n) differs by at most |difference of omega| |sum of omega|
+    const double turning = length(m.angular_acceleration, c.angular_acceleration, -1.0) +
+        length(m.spin, c.spin, -1.0) * length(m.spin, c.spin, 1.0);
+    constexpr double ROUND_OFF = 1.0 + 1.0e-12;
+    s.radius = std::max(s.radius, (length(m.acceleration, c.acceleration, -1.0) + part.radius) * ROUND_OFF);
+    s.turning = std::max(s.turning, (turning + part.turning) * ROUND_OFF);
+  }
+  return s;
+}
+
+/* ---------------------------------------------------------------------- */
 
 void AccelerationHistory::update_tree() const
 {
@@ -81,20 +96,7 @@ void AccelerationHistory::update_tree() const
     if (level == levels.size()) levels.emplace_back();
     std::vector<Sphere> &spheres = levels[level];
     if (spheres.size() > kept) spheres.resize(kept);
-    while (spheres.size() < whole) {
-      const size_t first = spheres.size() * BRANCH;
-      Sphere s = {};
-      for (size_t i = 0; i < BRANCH; i++)
-        for (int d = 0; d < 3; d++) s.centre[d] += member(level, first + i).centre[d] / BRANCH;
-      for (size_t i = 0; i < BRANCH; i++) {
-        const Sphere m = member(level, first + i);
-        const double r[3] = {m.centre[0] - s.centre[0], m.centre[1] - s.centre[1], m.centre[2] - s.centre[2]};
-        constexpr double ROUND_OFF = 1.0 + 1.0e-12;
-        s.radius = std::max(s.radius, (std::sqrt(dot(r, r)) + m.radius) * ROUND_OFF);
-        s.turning = std::max(s.turning, m.turning * ROUND_OFF);
-      }
-      spheres.push_back(s);
-    }
+    while (spheres.size() < whole) spheres.push_back(around(level, spheres.size() * BRANCH));
   }
 }
 
@@ -105,7 +107,7 @@ double AccelerationHistory::largest_push(const double *n, double shell, size_t &
   const auto push = [&](size_t i) { return -motions[i].lift(n, shell); };
   if (push(largest) > push(hint)) hint = largest;
   double most = push(hint);
-  search([&](const Sphere &s) { return dot(s.centre, n) + s.radius > most; },
+  search([&](const Sphere &s) { return s.size(shell) - s.centre.lift(n, shell) > most; },
          [&](size_t i) {
            if (push(i) > most) {
              hint = i;
@@ -124,6 +126,7 @@ void AccelerationHistory::assign(const Motion *first, size_t count)
   motions.assign(first, first + count);
   for (size_t i = 0; i < count; i++) {
     const double size2 = dot(motions[i].acceleration, motions[i].acceleration);
+    turned = turned || motions[i].turns();
     if (size2 > size2_of_peak) {
       largest = i;
       size2_of_peak = size2;

@@ -12,21 +12,42 @@
 
 namespace Dust {
 
+/*! p = lambda q + e with e normal to q, q2 = |q|^2; lambda and |e|^2 */
+struct Split {
+  double lambda, aside2;
+};
+inline Split split(const double *p, const double *q, double q2)
+{
+  const double lambda = dot(p, q) / q2;
+  const double e[3] = {p[0] - lambda * q[0], p[1] - lambda * q[1], p[2] - lambda * q[2]};
+  return {lambda, dot(e, e)};
+}
+
+/*! True if p lies between the origin and q, to round-off: q is then at least as large in every direction */
+inline bool is_between(const Split &s, double q2)
+{
+  constexpr double ROUND_OFF2 = 1.0e-24;
+  return s.lambda >= 0.0 && s.lambda <= 1.0 && s.aside2 <= ROUND_OFF2 * q2;
+}
+
 /*! The motions of a collision, along the carrier's own axes, as far as any of them can matter most to some grain
  *
  * Straight impacts and steady sliding leave one. Where the acceleration turns or the carrier does, all of them stay, in a
- * tree of bounding spheres of the accelerations, so that a question about them looks at few. */
+ * tree of bounding spheres, so that a question about them looks at few. */
 class AccelerationHistory {
  public:
   void clear();
 
-  /*! Adds a motion; size2 = square of its acceleration */
-  void add(const Motion &motion, double size2);
+  /*! Adds a motion
+   *  \param size2  square of its acceleration
+   *  \param turns  Motion::turns() */
+  void add(const Motion &motion, double size2, bool turns);
 
   bool empty() const { return motions.empty(); }
   /*! The motion of the largest acceleration; there must be one */
   const Motion &peak() const { return motions[largest]; }
   double peak2() const { return size2_of_peak; }
+  bool any_turns() const { return turned; }
 
   /*! Largest push on a grain, a.n less the centrifugal acceleration, if it is positive for some motion, else 0
    *  \param hint  0 at first; keeps the answer's place, which is near that for a similar direction */
@@ -39,12 +60,8 @@ class AccelerationHistory {
   {
     if (motions.empty()) return false;
     if (excess(peak()) > 0.0) return true;
-    const auto may = [&](const Sphere &s) {
-      Motion centre = {};
-      for (int d = 0; d < 3; d++) centre.acceleration[d] = s.centre[d];
-      return excess(centre) + slope * (s.radius + shell * s.turning) > 0.0;
-    };
-    return search(may, [&](size_t i) { return excess(motions[i]) > 0.0; });
+    return search([&](const Sphere &s) { return excess(s.centre) + slope * s.size(shell) > 0.0; },
+                  [&](size_t i) { return excess(motions[i]) > 0.0; });
   }
 
   /*! Its motions, for transfer to another rank and restart */
@@ -52,19 +69,23 @@ class AccelerationHistory {
   void assign(const Motion *first, size_t count);
 
  private:
-  static constexpr size_t BRANCH = 16;
+  static constexpr size_t BRANCH = 8;
+  // g on a grain at the distance r differs by at most radius + r turning from that of the centre
   struct Sphere {
-    double centre[3], radius;
-    double turning;    // largest |alpha| + omega^2
+    Motion centre;
+    double radius, turning;
+    double size(double shell) const { return radius + shell * turning; }
   };
   std::vector<Motion> motions;
   // each of BRANCH of the level below, the first of BRANCH motions; brought up to date when a question is asked
   mutable std::vector<std::vector<Sphere>> levels;
   mutable size_t in_tree = 0;    // the first motions: as they were when the tree was last up to date
   size_t largest = 0;
+  bool turned = false;    // whether any motion did that was kept for a while
   double size2_of_peak = 0.0;
 
   Sphere member(size_t level, size_t i) const;
+  Sphere around(size_t level, size_t first) const;    // BRANCH members
   void update_tree() const;
   size_t count(size_t level) const { return level < levels.size() ? levels[level].size() : 0; }
 
@@ -88,15 +109,6 @@ class AccelerationHistory {
     return false;
   }
 };
-
-/*! p = lambda q + e with e normal to q, q2 = |q|^2; lambda and |e|^2 */
-struct Split {
-  double lambda, aside2;
-};
-Split split(const double *p, const double *q, double q2);
-
-/*! True if p lies between the origin and q, to round-off: q is then at least as large in every direction */
-bool is_between(const Split &s, double q2);
 
 }    // namespace Dust
 

@@ -8,6 +8,7 @@
 #include "jkr.h"
 #include "motion_bound.h"
 #include "normal_motion.h"
+#include "patch_bits.h"
 #include "surface_motion.h"
 
 #include <algorithm>
@@ -21,7 +22,6 @@ using namespace Dust;
 
 namespace {
 
-constexpr int PATCH = 64;
 constexpr double INF = std::numeric_limits<double>::infinity();
 
 // orders grains so that each run of PATCH is a compact patch: halves the set across its longest side, again and again
@@ -46,12 +46,6 @@ void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
   });
   order_in_patches(grains, first, middle);
   order_in_patches(grains, middle, last);
-}
-
-// calls visit(bit) for each set bit of a word
-template <typename Visit> void each_bit(uint64_t word, Visit visit)
-{
-  for (; word; word &= word - 1) visit(__builtin_ctzll(word));
 }
 
 }    // namespace
@@ -144,15 +138,20 @@ bool DetachmentFunctions::may_move(const Motion &m) const
    sliding and rolling of Eq. 2
 ------------------------------------------------------------------------- */
 
-double DetachmentFunctions::excess(Mode mode, int bit, const Motion &motion) const
+DetachmentFunctions::Load DetachmentFunctions::load(int bit, const Motion &motion) const
 {
   const Site &site = sites[bit];
   const double *a = motion.acceleration;
   double g[3] = {-a[0], -a[1], -a[2]};
   if (motion.turns()) motion.inertia(site.n, site.shell, g);
   const double gn = dot(g, site.n), gt2 = dot(g, g) - gn * gn;
-  const auto [factor, slope] = limit(mode, site.lever);
-  return std::sqrt(std::max(0.0, gt2)) - slope * std::fabs(factor * site.hold - gn);
+  return {gn, std::sqrt(std::max(0.0, gt2))};
+}
+
+double DetachmentFunctions::excess(Mode mode, int bit, const Load &load) const
+{
+  const auto [factor, slope] = limit(mode, sites[bit].lever);
+  return load.gt - slope * std::fabs(factor * sites[bit].hold - load.gn);
 }
 
 // from the value at the centre: a chord r changes g by at most |r_pd| (|alpha| + 3 omega^2) r, g_n and g_t by |g| r more
@@ -180,16 +179,34 @@ DetachmentFunctions::Range DetachmentFunctions::excess_in_patch(Mode mode, int p
 void Collision::begin(const Quaternion &orientation, const double *spin)
 {
   course = Course{};
-  course.frame = course.now = orientation;
+  course.frame = orientation;
   std::copy_n(spin, 3, course.spin0);
-  course.weak = 1.0;
-  start.clear();
-  history.clear();
   record.clear();
-  window.along = -1.0;
-  window.width = 1.0e-3;
-  std::fill_n(window.last, 3, 0.0);
-  std::fill_n(window.spin, 3, 0.0);
+  strong.reset();
+}
+
+void Collision::release(Workspace &work)
+{
+  if (strong) work.idle.push_back(std::move(strong));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Collision::become_strong(Workspace &work)
+{
+  if (work.idle.empty()) work.idle.push_back(std::make_unique<Strong>());
+  strong = std::move(work.idle.back());
+  work.idle.pop_back();
+  strong->state = {};
+  strong->state.now = course.frame;
+  strong->state.now.turn_by(course.turned, 1.0);
+  strong->start.clear();
+  strong->history.clear();
+  strong->window.close();
+  if (course.steps > 0.0) {
+    const Motion largest = largest_of_weak();
+    strong->history.add(largest, course.largest2, largest.turns());
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -197,65 +214,85 @@ void Collision::begin(const Quaternion &orientation, const double *spin)
 bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double dt, uint64_t *attached, Workspace &work)
 {
   Course &c = course;
-  Motion in_space = middle;
-  const bool turns = middle.turns();
-  c.time += dt;
-  for (int d = 0; d < 3; d++) {
-    c.impulse[d] += middle.acceleration[d] * dt;
-    in_space.spin[d] += 0.5 * dt * middle.angular_acceleration[d];
-  }
-  const bool first = c.steps == 0.0;
-  c.steps += 1.0;
-  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(in_space.acceleration, in_space.spin, dt);
-  // after a pause longer than the burst before it, another one begins
-  const auto lively = [&c]() {
-    if (c.steps - 1.0 - c.lively_end > c.lively_end - c.burst) c.burst = c.steps - 1.0;
-    c.lively_end = c.steps;
-  };
+  Motion motion = middle;
+  for (int d = 0; d < 3; d++) motion.spin[d] += 0.5 * dt * middle.angular_acceleration[d];
+  const double size2 = dot(motion.acceleration, motion.acceleration), size = std::sqrt(size2), turning = df.reach * motion.turning();
+  const bool may_move = size + turning > df.moving, first = c.steps == 0.0;
 
-  const double size2 = dot(in_space.acceleration, in_space.acceleration);
-  if (c.weak > 0.0) {
+  if (weak()) {
     if (!first)
       for (int d = 0; d < 3; d++) c.turned[d] += middle.spin[d] * dt;
-    if (!df.may_move(in_space)) {
-      if (first || size2 > c.largest2) {
-        c.largest2 = size2;
-        c.largest = in_space;
-        std::copy_n(c.turned, 3, c.largest_turned);
-        lively();
-      }
+    if (!may_move) {
+      add(df, motion, dt);
+      if (!first && size2 <= c.largest2) return false;
+      c.largest2 = size2;
+      c.largest = motion;
+      std::copy_n(c.turned, 3, c.largest_turned);
+      mark_lively();
       return false;
     }
-    if (!first) history.add(largest_of_weak(), c.largest2);
-    c.now.turn_by(c.turned, 1.0);
-    c.weak = 0.0;
-  } else if (turns)
-    c.now.turn_by(middle.spin, dt);
+    become_strong(work);
+  } else
+    strong->state.now.turn_by(middle.spin, dt);
 
-  const Motion m = in_space.along(c.now);
-  const double turning = turns ? m.turning() : 0.0;
-  const double most = std::sqrt(size2) + df.reach * turning;    // |g| on any grain
-  if (most > df.moving || size2 > history.peak2()) {
-    lively();
-    std::copy_n(in_space.spin, 3, c.spin);
-    c.lively = c;
+  Strong &s = *strong;
+  const AccelerationHistory &history = s.history;
+  const bool lively = may_move || size2 > history.peak2();
+  if (!lively && c.lively_end == c.steps) {
+    s.state.lively.time = c.time;
+    std::copy_n(c.impulse, 3, s.state.lively.impulse);
+  }
+  add(df, motion, dt);
+  if (lively) {
+    mark_lively();
+    std::copy_n(motion.spin, 3, s.state.lively.spin);
   }
 
-  Split s = {INF, INF};
-  if (!history.empty() && size2 <= history.peak2() && (!turns || most > df.least)) {
-    const Motion &peak = history.peak();
-    s = split(m.acceleration, peak.acceleration, history.peak2());
-    if (!turns && !peak.turns() && is_between(s, history.peak2())) return false;
+  constexpr double ROUND_OFF = 1.0e-12;
+  const bool turns = turning > ROUND_OFF * size;
+  if (!turns) {
+    std::fill_n(motion.angular_acceleration, 3, 0.0);
+    std::fill_n(motion.spin, 3, 0.0);
   }
+  const Motion m = motion.along(s.state.now);
+  const double *w = m.spin, spun = turns ? df.reach * dot(w, w) : 0.0;
+  const bool may_lift = size + spun > df.least;
+  Split part = {INF, INF};
+  if (!history.empty() && size2 <= history.peak2() && (may_lift || !turns))
+    part = split(m.acceleration, history.peak().acceleration, history.peak2());
+  // between none and the peak no grain meets any criterion that has met none at the peak
+  if (!turns && is_between(part, history.peak2()) && !(history.any_turns() && history.peak().turns())) return false;
+
+  // what has held at the peak holds at a part of it, with that part of the room up to c for what comes aside and by spin
+  const auto holds = [&]() {
+    const double *v = history.peak().spin, change[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]};
+    const double sum[3] = {w[0] + v[0], w[1] + v[1], w[2] + v[2]};
+    const double more = std::sqrt(part.aside2) + df.reach * std::sqrt(dot(change, change) * dot(sum, sum));
+    return (1.0 - part.lambda) * (df.least - df.reach * dot(v, v)) >= more;
+  };
   const size_t before = work.detached.size();
   if (df.criteria.ibrahim)
     check_all(df, m, attached, work);
-  else if (most > df.least) {
-    const double spare = (1.0 - s.lambda) * df.least - df.reach * turning;
-    if (!(s.lambda >= 0.0 && spare >= 0.0 && s.aside2 <= spare * spare)) lift_off(df, m, attached, work);
-  }
-  history.add(m, size2);
+  else if (may_lift && !(part.lambda >= 0.0 && part.lambda <= 1.0 && holds()))
+    lift_off(df, m, attached, work);
+  s.history.add(m, size2, turns);
   return work.detached.size() > before;
+}
+
+void Collision::add(const DetachmentFunctions &df, const Motion &motion, double dt)
+{
+  course.steps += 1.0;
+  course.time += dt;
+  for (int d = 0; d < 3; d++) course.impulse[d] += motion.acceleration[d] * dt;
+  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(motion.acceleration, motion.spin, dt);
+}
+
+// after a pause longer than the burst before it, another one begins
+void Collision::mark_lively()
+{
+  const double before = course.steps - 1.0;
+  if (before - course.lively_end > course.lively_end - course.burst) course.burst = before;
+  course.lively_end = course.steps;
 }
 
 /* ----------------------------------------------------------------------
@@ -264,125 +301,12 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
 
 void Collision::lift_off(const DetachmentFunctions &df, const Motion &motion, uint64_t *attached, Workspace &work)
 {
-  if (start.empty()) start.assign(attached, attached + df.words());
-
+  if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
   work.leaving.clear();
-  const double *a = motion.acceleration;
-  double along = -dot(a, window.axis);
-  const double e[3] = {a[0] + along * window.axis[0], a[1] + along * window.axis[1], a[2] + along * window.axis[2]};
-  // omega^2 - (omega.n)^2 changes by at most |change of omega| |sum of both|
-  const double *w = motion.spin, *v = window.spin;
-  const double change[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]}, sum = std::sqrt(dot(w, w)) + std::sqrt(dot(v, v));
-  const double strayed = std::sqrt(dot(e, e)) + df.reach * std::sqrt(dot(change, change)) * sum;
-  double jump2 = 0.0;
-  for (int d = 0; d < 3; d++) {
-    jump2 += (a[d] - window.last[d]) * (a[d] - window.last[d]);
-    window.last[d] = a[d];
-  }
-  if (along >= 0.0 && along <= window.along && strayed <= window.aside) {
-    window.strayed = std::max(window.strayed, strayed);
-  } else if (constexpr double WORTH_IT = 2.0; WORTH_IT * WORTH_IT * jump2 > window_length(df, dot(a, a)) * window_length(df, dot(a, a))) {
-    // large steps, as in a bed of soft carriers: a window would be left before it pays
-    window.along = -1.0;
-    scan(df, motion, attached, work);
-    return;
-  } else {
-    // twice as wide as needed so far
-    if (window.along >= 0.0 && along <= window.along) window.width *= 2.0;
-    else if (window.along >= 0.0) window.width = 2.0 * window.strayed / window.from;
-    window.width = std::clamp(window.width, 1.0e-4, 0.1);
-    open_window(df, motion, attached, work);
-    along = -dot(a, window.axis);
-  }
-
-  const int reached = window.step_of(along);
-  for (; window.next < window.candidates.size() && window.candidates[window.next].from <= reached; window.next++)
-    window.close.push_back(window.candidates[window.next].bit);
-  for (size_t k = 0; k < window.close.size();) {
-    const int bit = window.close[k];
-    if (df.lift(bit, motion) > df.sites[bit].hold) {
-      work.leaving.push_back(bit);
-      window.close[k] = window.close.back();
-      window.close.pop_back();
-    } else
-      k++;
-  }
+  strong->window.look(df, motion, attached, work.leaving);
   // the order of windows must not show, as a restart opens another one
   if (!std::is_sorted(work.leaving.begin(), work.leaving.end())) std::sort(work.leaving.begin(), work.leaving.end());
   for (int bit : work.leaving) leave_place(df, bit, NORMAL, motion, attached, work);
-}
-
-// those that leave now, and nothing for later
-void Collision::scan(const DetachmentFunctions &df, const Motion &motion, uint64_t *attached, Workspace &work)
-{
-  const double *a = motion.acceleration, spun = df.reach * dot(motion.spin, motion.spin), size = std::sqrt(dot(a, a));
-  for (int p = 0; p < df.words(); p++) {
-    const auto &patch = df.patches[p];
-    if (!attached[p] || size * patch.radius - dot(a, patch.centre) + spun <= patch.least_hold) continue;
-    each_bit(attached[p], [&](int k) {
-      const int bit = p * PATCH + k;
-      if (df.lift(bit, motion) > df.sites[bit].hold) leave_place(df, bit, NORMAL, motion, attached, work);
-    });
-  }
-}
-
-/* ----------------------------------------------------------------------
-   window from g on: about 500 grains of 4500 to come, whatever |g|, as the number that holds goes with 1/|g|; those that
-   lift off at g itself are leaving
-------------------------------------------------------------------------- */
-
-void Collision::open_window(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached, Workspace &work)
-{
-  constexpr double ROUND_OFF = 1.0e-9;
-  const double *a = motion.acceleration, size = std::sqrt(dot(a, a)), spun = df.reach * dot(motion.spin, motion.spin);
-  for (int d = 0; d < 3; d++) window.axis[d] = size > 0.0 ? -a[d] / size : d == 2;
-  window.from = size;
-  window.along = size + window_length(df, size * size);
-  // well below what holds a grain, or grains that feel no lift at all would be candidates
-  window.aside = std::min(size * window.width, 0.3 * df.least);
-  window.strayed = 0.0;
-  std::copy_n(motion.spin, 3, window.spin);
-  window.steps_per_force = Window::STEPS / (window.along - window.from);
-  window.close.clear();
-  window.next = 0;
-  const double most = window.along * (1.0 + ROUND_OFF), aside = window.aside * (1.0 + ROUND_OFF);
-
-  work.found.clear();
-  int count[Window::STEPS + 1] = {};
-  for (int p = 0; p < df.words(); p++) {
-    const auto &patch = df.patches[p];
-    if (!attached[p] || most * std::max(0.0, dot(window.axis, patch.centre) + patch.radius) + aside + spun <= patch.least_hold)
-      continue;
-    each_bit(attached[p], [&](int k) {
-      const int bit = p * PATCH + k;
-      const auto &site = df.sites[bit];
-      const double u = dot(window.axis, site.n), hold = site.hold - site.shell * motion.centrifugal(site.n);    // what is left
-      if (most * std::max(0.0, u) <= hold - aside) return;
-      if (df.lift(bit, motion) > site.hold) {
-        work.leaving.push_back(bit);
-        return;
-      }
-      const int from = hold > aside ? window.step_of((hold - aside) / u * (1.0 - ROUND_OFF)) : 0;
-      work.found.push_back({from, bit});
-      count[from + 1]++;
-    });
-  }
-  // in the order of steps along the axis
-  std::partial_sum(count, count + Window::STEPS + 1, count);
-  window.candidates.resize(work.found.size());
-  for (const auto &candidate : work.found) window.candidates[count[candidate.from]++] = candidate;
-}
-
-/* ---------------------------------------------------------------------- */
-
-double Collision::window_length(const DetachmentFunctions &df, double size2)
-{
-  return 0.3 * size2 / df.least + 1.0e-3 * df.least;
-}
-
-int Collision::Window::step_of(double force) const
-{
-  return std::clamp(static_cast<int>((force - from) * steps_per_force), 0, STEPS - 1);
 }
 
 /* ----------------------------------------------------------------------
@@ -391,7 +315,7 @@ int Collision::Window::step_of(double force) const
 
 void Collision::check_all(const DetachmentFunctions &df, const Motion &motion, uint64_t *attached, Workspace &work)
 {
-  if (start.empty()) start.assign(attached, attached + df.words());
+  if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
   for (int p = 0; p < df.words(); p++)
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
@@ -417,15 +341,18 @@ void Collision::leave_place(const DetachmentFunctions &df, int bit, Mode mode, c
     cross(motion.spin, site.n, velocity);
     for (double &x : velocity) x *= site.shell;
   }
-  leave(df, bit, mode, course.now, site.n, velocity, &motion, attached, work);
+  leave(df, bit, mode, strong->state.now, site.n, velocity, &motion, attached, work);
 }
 
 void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const Quaternion &axes, const double *direction,
                       const double *velocity, const Motion *now, uint64_t *attached, Workspace &work)
 {
   attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
-  for (Mode met : {SLIDING, ROLLING})
-    if (df.criteria.count) course.count[met] += (now && df.excess(met, bit, *now) > 0.0) || has_met(met, df, bit);
+  if (df.criteria.count) {
+    const DetachmentFunctions::Load load = now ? df.load(bit, *now) : DetachmentFunctions::Load{0.0, 0.0};
+    for (Mode met : {SLIDING, ROLLING})
+      strong->state.count[met] += (now && df.excess(met, bit, load) > 0.0) || has_met(met, df, bit);
+  }
   work.detached.push_back({bit, mode, {}, {}});
   if (!work.locate) return;
   axes.to_space(direction, work.detached.back().direction);
@@ -444,25 +371,25 @@ Motion Collision::largest_of_weak() const
 bool Collision::has_met(Mode mode, const DetachmentFunctions &df, int bit) const
 {
   const auto &site = df.sites[bit];
-  return history.any([&](const Motion &m) { return df.excess(mode, bit, m); }, 1.0 + df.limit(mode, site.lever).slope, site.shell);
+  return strong->history.any([&](const Motion &m) { return df.excess(mode, bit, m); }, 1.0 + df.limit(mode, site.lever).slope,
+                             site.shell);
 }
 
 int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint64_t *attached) const
 {
-  int n = static_cast<int>(course.count[mode]);
-  if (!df.criteria.count) return n;
-  const bool weak = course.weak > 0.0;
-  const Motion peak = weak ? largest_of_weak() : history.peak();
-  if (weak && std::sqrt(course.largest2) + df.reach * peak.turning() <= df.least_to[mode]) return n;
+  if (!df.criteria.count) return 0;
+  int n = strong ? static_cast<int>(strong->state.count[mode]) : 0;
+  const Motion peak = strong ? strong->history.peak() : largest_of_weak();
+  if (!strong && std::sqrt(course.largest2) + df.reach * peak.turning() <= df.least_to[mode]) return n;
   for (int p = 0; p < df.words(); p++) {
     if (!attached[p]) continue;
     const auto [least, largest] = df.excess_in_patch(mode, p, peak);
     if (least > 0.0)
       n += __builtin_popcountll(attached[p]);
-    else if (!weak || largest > 0.0)
+    else if (strong || largest > 0.0)
       each_bit(attached[p], [&](int k) {
         const int bit = p * PATCH + k;
-        n += weak ? df.excess(mode, bit, peak) > 0.0 : has_met(mode, df, bit);
+        n += strong ? has_met(mode, df, bit) : df.excess(mode, bit, peak) > 0.0;
       });
   }
   return n;
@@ -472,26 +399,28 @@ int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint6
 
 double Collision::peak_acceleration() const
 {
-  return std::sqrt(course.weak > 0.0 ? course.largest2 : history.peak2());
+  return std::sqrt(strong ? strong->history.peak2() : course.largest2);
 }
 
 /* ---------------------------------------------------------------------- */
 
 bool Collision::end(const DetachmentFunctions &df, const double *spin, uint64_t *attached, Workspace &work)
 {
-  Moment last = course.lively;
-  if (at_rest()) {
-    if (course.weak > 0.0) return false;    // nothing has moved
-  } else {
-    last = course;
-    std::copy_n(spin, 3, last.spin);
-  }
-  if (course.weak > 0.0) history.add(largest_of_weak(), course.largest2);
+  if (weak() && at_rest()) return false;    // nothing has moved
   const size_t before = work.detached.size();
-  if (df.criteria.tangential == Criteria::INTEGRATE)
+  if (df.criteria.tangential == Criteria::INTEGRATE) {
     integrate(df, attached, work);
-  else if (df.criteria.tangential != Criteria::OFF)
+  } else if (df.criteria.tangential != Criteria::OFF) {
+    Strong::Moment last;
+    if (at_rest()) {
+      last = strong->state.lively;
+    } else {
+      last.time = course.time;
+      std::copy_n(course.impulse, 3, last.impulse);
+      std::copy_n(spin, 3, last.spin);
+    }
     estimate(df, last, attached, work);
+  }
   return work.detached.size() > before;
 }
 
@@ -499,7 +428,7 @@ bool Collision::end(const DetachmentFunctions &df, const double *spin, uint64_t 
    Eqs. 3b and 4-6
 ------------------------------------------------------------------------- */
 
-void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint64_t *attached, Workspace &work)
+void Collision::estimate(const DetachmentFunctions &df, const Strong::Moment &last, uint64_t *attached, Workspace &work)
 {
   double dv[3], spin0[3], spin[3];    // in the frame of first contact
   course.frame.to_body(last.impulse, dv);
@@ -508,9 +437,12 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
   for (double &x : dv) x = -x;
   const double fastest = std::sqrt(dot(dv, dv)) + df.reach * (std::sqrt(dot(spin0, spin0)) + 2.0 * std::sqrt(dot(spin, spin)));
   if (fastest * fastest <= df.slow2) return;
-  if (start.empty()) start.assign(attached, attached + df.words());
+  if (weak()) become_strong(work);
+  if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
 
+  const AccelerationHistory &history = strong->history;
   const double mu = df.criteria.tangential == Criteria::ESTIMATE ? df.friction : 0.0;
+  const double largest_push = std::sqrt(history.peak2());    // on any grain
   size_t hint = 0;
   for (int patch = 0; patch < df.words(); patch++) {
     each_bit(attached[patch], [&](int k) {
@@ -539,6 +471,12 @@ void Collision::estimate(const DetachmentFunctions &df, const Moment &last, uint
       const auto square = [&](double part) { return part * part * slip2 + 2.0 * part * dot(slip, surface) + surface2; };
       // spares most grains that stay the whole history: it is convex in the part that is left
       if (surface2 <= needed && square(part_left(-history.peak().lift(n, site.shell))) <= needed) return;
+      // most of the others leave whatever the push was, which then matters to their velocity only
+      const bool leaves = surface2 <= needed && square(part_left(largest_push)) > needed;
+      if (leaves && !work.locate) {
+        leave(df, bit, TANGENTIAL, course.frame, n, surface, nullptr, attached, work);
+        return;
+      }
       const double part = part_left(history.largest_push(n, site.shell, hint));
       if (square(part) <= needed) return;
       double v[3];
@@ -560,8 +498,10 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
   record.turn_to(course.frame);
   const MotionBound bound(record, spin0, peak_acceleration(), df.rolling, df.carrier_radius);
   if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach))) return;
-  if (start.empty()) start.assign(attached, attached + df.words());
+  if (weak()) become_strong(work);
+  if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
 
+  const AccelerationHistory &history = strong->history;
   SurfaceMotion motion(df.friction, df.rolling);
   NormalMotion ringing(df.damping);
   int bits[SurfaceMotion::LANES];
@@ -657,8 +597,10 @@ std::vector<Collision::Step> Collision::steps(const double *spin0) const
 
 int Collision::lost_north(const DetachmentFunctions &df, const uint64_t *attached) const
 {
+  if (weak()) return 0;
   int lost = 0;
   double impulse[3];
+  const std::vector<uint64_t> &start = strong->start;
   course.frame.to_body(course.impulse, impulse);
   for (size_t patch = 0; patch < start.size(); patch++)
     each_bit(start[patch] & ~attached[patch], [&](int k) {
@@ -668,56 +610,70 @@ int Collision::lost_north(const DetachmentFunctions &df, const uint64_t *attache
 }
 
 /* ----------------------------------------------------------------------
-   sizes, course; then start, history and record. The window is opened anew, which changes no result.
+   sizes; course and record, then what a strong one has. The window is opened anew, which changes no result.
 ------------------------------------------------------------------------- */
 
 namespace {
 
-constexpr int PACKED_SIZES = 3;
+constexpr int PACKED_SIZES = 4;
 template <typename T> constexpr size_t numbers_of()
 {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0, "travels as doubles");
   return sizeof(T) / sizeof(double);
 }
 
+template <typename T> double *put(double *buf, const T *data, size_t count)
+{
+  std::memcpy(buf, data, count * sizeof(T));
+  return buf + count * numbers_of<T>();
+}
+
+template <typename T> const double *get(const double *buf, T *data, size_t count)
+{
+  std::memcpy(static_cast<void *>(data), buf, count * sizeof(T));
+  return buf + count * numbers_of<T>();
+}
+
 }    // namespace
 
 int Collision::packed_size() const
 {
-  return static_cast<int>(PACKED_SIZES + numbers_of<Course>() + start.size() + history.kept().size() * numbers_of<Motion>()) +
-      record.packed_size();
+  size_t size = PACKED_SIZES + numbers_of<Course>() + record.packed_size();
+  if (strong)
+    size += numbers_of<Strong::State>() + strong->start.size() + strong->history.kept().size() * numbers_of<Motion>();
+  return static_cast<int>(size);
 }
 
 void Collision::pack(double *buf) const
 {
-  const std::vector<Motion> &motions = history.kept();
-  *buf++ = double(start.size());
-  *buf++ = double(motions.size());
+  *buf++ = strong != nullptr;
+  *buf++ = strong ? double(strong->start.size()) : 0.0;
+  *buf++ = strong ? double(strong->history.kept().size()) : 0.0;
   *buf++ = record.packed_size();
-  const auto put = [&](const void *data, size_t numbers) {
-    std::memcpy(buf, data, numbers * sizeof(double));
-    buf += numbers;
-  };
-  put(&course, numbers_of<Course>());
-  put(start.data(), start.size());
-  put(motions.data(), motions.size() * numbers_of<Motion>());
+  buf = put(buf, &course, 1);
   record.pack(buf);
+  if (!strong) return;
+  buf += record.packed_size();
+  buf = put(buf, &strong->state, 1);
+  buf = put(buf, strong->start.data(), strong->start.size());
+  put(buf, strong->history.kept().data(), strong->history.kept().size());
 }
 
 void Collision::unpack(const double *buf)
 {
-  const double none[3] = {0.0, 0.0, 0.0};
-  begin(Quaternion(), none);
-  start.resize(static_cast<size_t>(*buf++));
+  const bool was_strong = *buf++ != 0.0;
+  std::vector<uint64_t> start(static_cast<size_t>(*buf++));
   std::vector<Motion> motions(static_cast<size_t>(*buf++));
   const int recorded = static_cast<int>(*buf++);
-  const auto get = [&](void *data, size_t numbers) {
-    std::memcpy(data, buf, numbers * sizeof(double));
-    buf += numbers;
-  };
-  get(&course, numbers_of<Course>());
-  get(start.data(), start.size());
-  get(motions.data(), motions.size() * numbers_of<Motion>());
-  history.assign(motions.data(), motions.size());
+  buf = get(buf, &course, 1);
   record.unpack(buf, recorded);
+  strong.reset();
+  if (!was_strong) return;
+  buf += recorded;
+  strong = std::make_unique<Strong>();
+  buf = get(buf, &strong->state, 1);
+  buf = get(buf, start.data(), start.size());
+  get(buf, motions.data(), motions.size());
+  strong->start = std::move(start);
+  strong->history.assign(motions.data(), motions.size());
 }

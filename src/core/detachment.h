@@ -7,10 +7,12 @@
 
 #include "acceleration_history.h"
 #include "impulse_record.h"
+#include "lift_off_window.h"
 #include "quaternion.h"
 #include "texture.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 /* The detachment functions: which grains of a texture leave a carrier in a collision, from the carrier's motion alone.
@@ -82,6 +84,7 @@ class DetachmentFunctions {
 
  private:
   friend class Collision;
+  friend class LiftOffWindow;
 
   Criteria criteria;
   double friction, rolling, damping;
@@ -117,8 +120,14 @@ class DetachmentFunctions {
     double factor, slope;
   };
   Limit limit(Mode mode, double lever) const { return mode == SLIDING ? Limit{2.0, friction} : Limit{1.0, lever}; }
-  // by how much a grain meets it, per grain mass
-  double excess(Mode mode, int bit, const Motion &motion) const;
+  // inertia force per mass on a grain, along n and normal to it
+  struct Load {
+    double gn, gt;
+  };
+  Load load(int bit, const Motion &motion) const;
+  // by how much a grain meets the criterion, per grain mass
+  double excess(Mode mode, int bit, const Load &load) const;
+  double excess(Mode mode, int bit, const Motion &motion) const { return excess(mode, bit, load(bit, motion)); }
   // least and largest that the grains of a patch can have
   struct Range {
     double least, largest;
@@ -134,16 +143,28 @@ struct Detachment {
   double velocity[3];     //!< relative to the carrier's centre, in space
 };
 
-/*! What the collisions of a rank share while one of them is looked at */
+/*! What is kept of a collision from when inertia could make a grain slide */
+struct Strong {
+  struct Moment {
+    double time;
+    double impulse[3], spin[3];    // as of Collision
+  };
+  struct State {                   // in space
+    Quaternion now;                // the carrier
+    Moment lively;                 // at the last lively step
+    double count[NMODES];          // of the grains that have left, those that had met SLIDING and ROLLING
+  } state;
+  std::vector<uint64_t> start;     // attached at begin(), kept from when the first grain could leave
+  AccelerationHistory history;
+  LiftOffWindow window;
+};
+
+/*! What the collisions of a rank share */
 struct Workspace {
   std::vector<Detachment> detached;    //!< grains that have left: to be taken and cleared by the caller
   bool locate = true;                  //!< whether the caller wants their directions and velocities
-  struct Candidate {
-    int from;    // step of the window from which the grain could lift off
-    int bit;
-  };
-  std::vector<Candidate> found;
   std::vector<int> leaving;
+  std::vector<std::unique_ptr<Strong>> idle;
 };
 
 /*! Collision of one carrier
@@ -161,12 +182,9 @@ struct Workspace {
  * Vectors come in space. The frame of first contact is the carrier's axes at the first step; it does not turn with them later.
  *
  * In most steps no grain can change, and little is done in the others:
- * - A grain that holds at q holds at lambda q + e too if lambda <= 1 and |e| <= (1 - lambda) c: unloading needs no look.
- * - While g stays in a window, no farther than S along an axis and E from it, only those grains can lift off that would
- *   at S with E to help. They are listed by the force along the axis from which each could, and a step of time
- *   sees only the head of that list. A window is opened where g leaves the last one.
- * - Where a step is too large for that, all grains are asked, by patches.
- * - A window has what spin adds to g_n where it was opened; what that changes by later counts as a part of E.
+ * - A grain that holds at q holds at lambda q + e too if what e and the spin add is no more than (1 - lambda) c: unloading
+ *   needs no look.
+ * - LiftOffWindow knows which grains can lift off next.
  * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
  *   holds, g_t + k g_n is a convex function of g, so the motions that the history keeps decide. */
 class Collision {
@@ -184,7 +202,10 @@ class Collision {
   bool step(const DetachmentFunctions &functions, const Motion &motion, double dt, uint64_t *attached, Workspace &work);
 
   /*! Whether it has come to rest though the contact lasts */
-  bool at_rest() const { return course.steps - course.lively_end > (course.weak > 0.0 ? WEAK_QUIET : QUIET) * (course.lively_end - course.burst); }
+  bool at_rest() const
+  {
+    return course.steps - course.lively_end > (weak() ? WEAK_QUIET : QUIET) * (course.lively_end - course.burst);
+  }
 
   /*! Lift-off tangential, at the first step without contact force or at rest: Eqs. 3b and 4-6 or INTEGRATE
    *  \param spin  after the contact */
@@ -194,12 +215,14 @@ class Collision {
    *  velocity so far */
   int lost_north(const DetachmentFunctions &functions, const uint64_t *attached) const;
 
-  double duration() const { return course.time; }    //!< of the steps so far
-  bool weak() const { return course.weak > 0.0; }
+  bool weak() const { return !strong; }
   double peak_acceleration() const;    //!< largest |contact acceleration| so far
   /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin(); where no inertia could make any slide,
    *  those that have met it at the largest acceleration */
   int grains_that(Mode mode, const DetachmentFunctions &functions, const uint64_t *attached) const;
+
+  /*! Gives back what it has taken from the workspace: when it is over, or its carrier gone */
+  void release(Workspace &work);
 
   // transfer to another rank and restart, as numbers
   int packed_size() const;
@@ -209,48 +232,27 @@ class Collision {
  private:
   static constexpr double QUIET = 3.0, WEAK_QUIET = 0.1;
 
-  struct Moment {
+  struct Course {                 // in space
     double time;
-    double impulse[3];    // contact force/carrier mass, integrated since begin()
-    double spin[3];
-  };
-  struct Course : Moment {        // up to now, in space
-    double weak;                  // 1 until inertia could make a grain slide, then 0
+    double impulse[3];            // contact force/carrier mass, integrated since begin()
     double steps;                 // so far
     double burst, lively_end;     // of them, when the present or last lively ones began and ended
-    double largest2;              // square of the largest acceleration of the weak time
-    double turned[3];             // angle about which the carrier turned in that time
-    Quaternion frame, now;        // the carrier at first contact, and since it is not weak
+    Quaternion frame;             // the carrier at first contact
     double spin0[3];              // before contact
-    Moment lively;                // at the last lively step, when it is not weak
-    Motion largest;               // of the weak time, with the angle until then
-    double largest_turned[3];
-    double count[NMODES];         // of the grains that have left, those that had met SLIDING and ROLLING
+    // of the weak time
+    double turned[3];             // angle about which the carrier turned
+    Motion largest;               // of the largest acceleration, with its square and the angle until then
+    double largest2, largest_turned[3];
   } course;
-  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
-  AccelerationHistory history;
-  ImpulseRecord record;           // with INTEGRATE only
+  ImpulseRecord record;              // with INTEGRATE only
+  std::unique_ptr<Strong> strong;    // from when inertia could make a grain slide
 
-  struct Window {
-    double axis[3], from, along, aside;    // from where it was opened to S = along, E = aside
-    double steps_per_force;
-    double strayed;                        // the farthest that g has been from the axis
-    double width;                          // E/|g| for the next window: as g strays
-    double last[3];                        // acceleration of the step before
-    double spin[3];                        // where it was opened: the lists have its part of the force
-    static constexpr int STEPS = 256;      // from `from` to `along`
-    int step_of(double force) const;
-    std::vector<Workspace::Candidate> candidates;    // by step
-    size_t next;                                     // first that cannot lift off yet
-    std::vector<int> close;                          // could lift off now
-  } window;
-
-  static double window_length(const DetachmentFunctions &functions, double size2);
-  void scan(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
-  void open_window(const DetachmentFunctions &functions, const Motion &motion, const uint64_t *attached, Workspace &work);
+  void become_strong(Workspace &work);
+  void add(const DetachmentFunctions &functions, const Motion &motion, double dt);
+  void mark_lively();
   void lift_off(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
   void check_all(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);
-  void estimate(const DetachmentFunctions &functions, const Moment &last, uint64_t *attached, Workspace &work);
+  void estimate(const DetachmentFunctions &functions, const Strong::Moment &last, uint64_t *attached, Workspace &work);
   void integrate(const DetachmentFunctions &functions, uint64_t *attached, Workspace &work);
   struct Step {
     double dt, acceleration[3];     // mean

@@ -23,7 +23,7 @@ struct Quaternion {
   void turn_by(const double *spin, double dt)
   {
     const double x = 0.5 * dt * spin[0], y = 0.5 * dt * spin[1], z = 0.5 * dt * spin[2], a2 = x * x + y * y + z * z;
-    if (a2 == 0.0) return;
+    if (a2 < 1.0e-40) return;    // not even 1e10 such steps would show
     // cos(a) and sin(a)/a: all but always in a time step this is exact to round-off
     double c = 1.0 - a2 * (0.5 - a2 / 24.0), s = 1.0 - a2 * (1.0 / 6.0 - a2 / 120.0);
     if (a2 > 1.0e-5) large_angle(a2, c, s);

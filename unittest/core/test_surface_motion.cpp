@@ -123,7 +123,7 @@ std::map<int, Mode> by_collision(const DetachmentFunctions &functions, const His
       other.step(functions, earlier, 1.0, all.data(), work);
       work.detached.clear();
       other.unpack(buf.data());
-      collision = other;
+      collision = std::move(other);
     }
   }
   return left;
