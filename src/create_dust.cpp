@@ -6,6 +6,7 @@
 
 #include "core/jkr.h"
 #include "dust_atoms.h"
+#include "dust_gather.h"
 #include "dust_options.h"
 
 #include "atom.h"
@@ -100,13 +101,7 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit) const
     MathExtra::copy3(atom->omega[i], c.omega);
     mine.push_back(c);
   }
-  constexpr int NDOUBLES = sizeof(Carrier) / sizeof(double);
-  const int count = static_cast<int>(mine.size()) * NDOUBLES;
-  std::vector<int> counts(comm->nprocs), offsets(comm->nprocs);
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int p = 1; p < comm->nprocs; p++) offsets[p] = offsets[p - 1] + counts[p - 1];
-  std::vector<Carrier> all((offsets.back() + counts.back()) / NDOUBLES);
-  MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, world);
+  std::vector<Carrier> all = dust_gather(mine, ALL_RANKS, world);
   std::sort(all.begin(), all.end(), [](const Carrier &a, const Carrier &b) { return a.tag < b.tag; });
   return all;
 }

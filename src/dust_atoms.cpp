@@ -21,6 +21,19 @@ DustAtoms::DustAtoms(LAMMPS *lmp) : Pointers(lmp), before(atom->nlocal)
 
 /* ---------------------------------------------------------------------- */
 
+bool DustAtoms::beyond_fixed_border(LAMMPS *lmp, const double *x)
+{
+  constexpr int FIXED = 1;
+  const Domain *domain = lmp->domain;
+  for (int d = 0; d < 3; d++) {
+    if (domain->boundary[d][0] == FIXED && x[d] < domain->boxlo[d]) return true;
+    if (domain->boundary[d][1] == FIXED && x[d] > domain->boxhi[d]) return true;
+  }
+  return false;
+}
+
+/* ---------------------------------------------------------------------- */
+
 tagint DustAtoms::highest_tag(LAMMPS *lmp)
 {
   tagint highest = 0;
@@ -70,13 +83,11 @@ bigint DustAtoms::finish()
 
 bool DustAtoms::is_mine(const double *x) const
 {
-  constexpr int FIXED = 1;
+  if (beyond_fixed_border(lmp, x)) return false;
   for (int d = 0; d < 3; d++) {
     const bool first = !domain->periodicity[d] && domain->sublo[d] == domain->boxlo[d];
     const bool last = !domain->periodicity[d] && domain->subhi[d] == domain->boxhi[d];
-    const bool below = x[d] < domain->sublo[d] && !(first && domain->boundary[d][0] != FIXED);
-    const bool above = last ? domain->boundary[d][1] == FIXED && x[d] > domain->subhi[d] : x[d] >= domain->subhi[d];
-    if (below || above) return false;
+    if ((x[d] < domain->sublo[d] && !first) || (x[d] >= domain->subhi[d] && !last)) return false;
   }
   return true;
 }

@@ -16,6 +16,8 @@ class DustAtoms : protected Pointers {
  public:
   explicit DustAtoms(class LAMMPS *);
 
+  // whether atoms cannot be there: on the outside of a border that is fixed
+  static bool beyond_fixed_border(class LAMMPS *, const double *x);
   // of the atoms of all ranks
   static tagint highest_tag(class LAMMPS *);
 

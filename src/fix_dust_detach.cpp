@@ -6,6 +6,7 @@
 
 #include "core/jkr.h"
 #include "dust_atoms.h"
+#include "dust_gather.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -29,7 +30,9 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr int FIXED = 1;    // in Domain::boundary
+// its own ones, beside those of DustOptions
+static const std::vector<std::string> KEYWORDS = {"friction", "rolling", "damping", "tangential", "criteria", "counts", "every",
+                                                  "rows", "rotation", "stiffen", "mass", "emit"};
 
 static double distance2(const double *a, const double *b)
 {
@@ -43,8 +46,8 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
-    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), began(nullptr), newcomers(true), mine{}, open_windows(0), too_soft(1.0),
-    warned(false)
+    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), began(nullptr), clock(0.0),
+    newcomers(true), mine{}, open_windows(0), too_soft(1.0), warned(false), exchange_room(0)
 {
   parse(narg, arg);
   check_order();    // of what is there already; the rest before a run
@@ -61,7 +64,7 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   maxexchange_dynamic = 1;
   force_reneighbor = lose_mass;    // carriers get lighter and atoms are created where neighbour lists are new
   next_reneighbor = -1;
-  make_room(0);
+  maxexchange = fixed_size() + 1;
 
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
   grow_arrays(atom->nmax);
@@ -112,10 +115,9 @@ void FixDustDetach::parse(int narg, char **arg)
       continue;
     }
     const std::string key = arg[iarg];
-    if (key != "friction" && key != "rolling" && key != "damping" && key != "tangential" && key != "criteria" && key != "every" && key != "rows" && key != "counts" &&
-        key != "rotation" && key != "stiffen" && key != "mass" && key != "emit")
-      error->all(FLERR, "Unknown fix dust/detach keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
-                 "friction, rolling, damping, tangential, criteria, counts, every, rows, write, rotation, orientation, stiffen, mass or emit", key);
+    if (std::find(KEYWORDS.begin(), KEYWORDS.end(), key) == KEYWORDS.end())
+      error->all(FLERR, "Unknown fix dust/detach keyword {}: use {}, or texture, bare, distribution, density, hamaker, surface, "
+                 "elastic, write or orientation", key, utils::join_words(KEYWORDS, ", "));
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     if (key == "friction") {
@@ -195,7 +197,7 @@ void FixDustDetach::build()
 
   memory->destroy(attached);
   grow_arrays(atom->nmax);
-  make_room(room / 2);
+  maxexchange = fixed_size() + 1 + exchange_room;
   adopt();
 
   if (comm->me == 0) {
@@ -209,7 +211,7 @@ void FixDustDetach::build()
 
 int FixDustDetach::setmask()
 {
-  return POST_NEIGHBOR | POST_FORCE | (lose_mass ? PRE_EXCHANGE : 0);
+  return INITIAL_INTEGRATE | POST_NEIGHBOR | POST_FORCE | (lose_mass ? PRE_EXCHANGE : 0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -334,6 +336,15 @@ void FixDustDetach::weigh()
 }
 
 /* ----------------------------------------------------------------------
+   a clock of its own, as the user may reset the number of the step or change its length
+------------------------------------------------------------------------- */
+
+void FixDustDetach::initial_integrate(int /*vflag*/)
+{
+  clock += update->dt;
+}
+
+/* ----------------------------------------------------------------------
    here f holds contact forces only
 ------------------------------------------------------------------------- */
 
@@ -342,29 +353,44 @@ void FixDustDetach::post_force(int /*vflag*/)
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
-  if (rotation) turn();
   const double *const rmass = atom->rmass;
-  const double *torque = rotation && nlocal ? atom->torque[0] : nullptr, *omega = rotation && nlocal ? atom->omega[0] : nullptr;
+  const bool spins = rotation && nlocal > 0;
+  const double *torque = spins ? atom->torque[0] : nullptr, *omega = spins ? atom->omega[0] : nullptr;
+  double *turned = spins ? angle[0] : nullptr;
+  const double dt = update->dt;
+  const int *const states = state;    // does not move in this loop
 
   const auto squared = [](const double *v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
   for (int i = 0; i < nlocal; i++, f += 3) {
+    if (spins)    // all atoms: it costs less than to ask which are carriers
+      for (int d = 3 * i; d < 3 * i + 3; d++) turned[d] += dt * omega[d];
+    // collisions are in no order, and a bed has more of them than a cache: those of atoms to come are fetched now
+    constexpr int AHEAD = 24;
+    if (i + AHEAD < nlocal && states[i + AHEAD] >= 0) {
+      const auto *lines = reinterpret_cast<const char *>(&collisions[states[i + AHEAD]]);
+      __builtin_prefetch(lines, 1);
+      __builtin_prefetch(lines + 64, 1);
+    }
     // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
-    uint64_t bits[3];
-    std::memcpy(bits, f, sizeof(bits));
-    const bool touches = (bits[0] | bits[1] | bits[2]) << 1;
-    if (!touches && state[i] <= FREE_FLIGHT) continue;
-    if (touches && state[i] == AT_REST) {    // what most carriers of a bed do
-      const double torque2 = rotation ? squared(torque + 3 * i) : 0.0, spin2 = rotation ? squared(omega + 3 * i) : 0.0;
+    uint64_t x, y, z;
+    std::memcpy(&x, f, sizeof(x));
+    std::memcpy(&y, f + 1, sizeof(y));
+    std::memcpy(&z, f + 2, sizeof(z));
+    const bool touches = (x | y | z) << 1;
+    if (!touches && states[i] <= FREE_FLIGHT) continue;
+    if (touches && states[i] == AT_REST) {    // what most carriers of a bed do
+      const double torque2 = spins ? squared(torque + 3 * i) : 0.0, spin2 = spins ? squared(omega + 3 * i) : 0.0;
       if (!functions->might_move(squared(f), torque2, spin2, stiffen_time * rmass[i])) continue;
     }
-    if (!(mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
+    if (!(mask[i] & groupbit) || states[i] == NO_CARRIER) continue;
     if (touches)
       collide(i);
-    else if (state[i] >= 0)
+    else if (states[i] >= 0)
       finish_collision(i, FREE_FLIGHT);
-    else if (state[i] == AT_REST)
+    else if (states[i] == AT_REST)
       leave_contact(i);
   }
+  if (spins && update->ntimestep % TURN_EVERY == 0) turn();
   if (update->ntimestep % every != 0) return;
   if (open_windows) close_window();
   if (lose_mass) {
@@ -375,19 +401,12 @@ void FixDustDetach::post_force(int /*vflag*/)
 }
 
 /* ----------------------------------------------------------------------
-   from the step before to this one. Angles of a few steps may be summed, as they are small, at steps that depend on nothing
-   else. All atoms in one go: it costs less than to ask which are carriers.
+   angles of a few steps may be summed, as they are small, at steps that depend on nothing else
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::turn()
 {
-  const int nlocal = atom->nlocal;
-  if (nlocal == 0) return;
-  double *sum = angle[0];
-  const double *omega = atom->omega[0], dt = update->dt;
-  for (int k = 0; k < 3 * nlocal; k++) sum[k] += dt * omega[k];
-  if (update->ntimestep % TURN_EVERY != 0) return;
-  for (int i = 0; i < nlocal; i++) {
+  for (int i = 0; i < atom->nlocal; i++) {
     if (state[i] != NO_CARRIER) orientation[i].turn_by(angle[i], 1.0);
     std::fill_n(angle[i], 3, 0.0);
   }
@@ -418,12 +437,12 @@ void FixDustDetach::collide(int i)
 {
   const Dust::Motion motion = motion_of(i);
   if (state[i] == AT_REST && !functions->may_move(motion)) return;
-  if (state[i] == FREE_FLIGHT) began[i] = double(update->ntimestep);
+  if (state[i] == FREE_FLIGHT) began[i] = clock;
   if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
   if (collision.step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
   const bool grows = !collision.weak() || criteria.tangential == Dust::Criteria::INTEGRATE;
-  if (grows && collision.packed_size() > room) make_room(collision.packed_size());
+  if (grows) make_exchange_room(collision);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
@@ -435,7 +454,7 @@ void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
   Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
   if (rotation) now.turn_by(angle[i], 1.0);
   collisions[state[i]].begin(now, motion.spin);
-  if (collisions[state[i]].packed_size() > room) make_room(collisions[state[i]].packed_size());
+  make_exchange_room(collisions[state[i]]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -465,7 +484,7 @@ void FixDustDetach::finish_collision(int i, int next)
 void FixDustDetach::leave_contact(int i)
 {
   state[i] = FREE_FLIGHT;
-  array_atom[i][CONTACT_TIME] = (double(update->ntimestep) - began[i]) * stiffen_time * update->dt;
+  array_atom[i][CONTACT_TIME] = (clock - began[i]) * stiffen_time;
 }
 
 /* ----------------------------------------------------------------------
@@ -488,7 +507,6 @@ int FixDustDetach::start_collision()
 {
   if (idle.empty()) {
     collisions.emplace_back();
-    idle.reserve(collisions.capacity());
     return static_cast<int>(collisions.size()) - 1;
   }
   const int index = idle.back();
@@ -542,8 +560,7 @@ void FixDustDetach::record(int i)
     if (lose_mass) {
       const double *spin = atom->omega[i];
       losses.push_back({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(), grain.radius,
-                        double(update->ntimestep), place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1],
-                        spin[2]});
+                        clock, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1], spin[2]});
     }
   }
   mine.weight += lost;
@@ -618,6 +635,9 @@ double FixDustDetach::compute_vector(int n)
   const Sums s = sum_up();
   const Totals &t = s.totals;
   const double grain_mass = functions ? functions->mean_mass() : 0.0;
+  const auto met = [this](Dust::Mode mode) {
+    return sum_under_way([=](const Dust::Collision &c, int i) { return c.grains_that(mode, *functions, attached[i]); });
+  };
   switch (n) {
     case 0: return t.initial;
     case 1: return s.attached;
@@ -630,8 +650,8 @@ double FixDustDetach::compute_vector(int n)
     case 6: return t.weight * grain_mass;
     case 7: return t.initial * grain_mass;
     case 8: return t.collisions;
-    case 9: return t.sliding + sum_under_way([&](const Dust::Collision &c, int i) { return c.grains_that(Dust::SLIDING, *functions, attached[i]); });
-    case 10: return t.rolling + sum_under_way([&](const Dust::Collision &c, int i) { return c.grains_that(Dust::ROLLING, *functions, attached[i]); });
+    case 9: return t.sliding + met(Dust::SLIDING);
+    case 10: return t.rolling + met(Dust::ROLLING);
     case 11: return t.modes[Dust::SLIDING];
     case 12: return t.modes[Dust::ROLLING];
     default: return t.no_room;
@@ -643,7 +663,8 @@ double FixDustDetach::compute_vector(int n)
 double FixDustDetach::memory_usage()
 {
   const double words = functions ? functions->words() : 0;
-  double bytes = double(atom->nmax) * (sizeof(int) + words * sizeof(uint64_t) + (NCOLUMNS + 2 + orientation_size()) * sizeof(double));
+  const double numbers = words + NCOLUMNS + 2 + orientation_size();
+  double bytes = double(atom->nmax) * (sizeof(int) + numbers * sizeof(double));
   for (const Dust::Collision &collision : collisions) bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
   return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]) + losses.capacity() * sizeof(Loss);
 }
@@ -714,19 +735,14 @@ void FixDustDetach::shed()
 // in free flight since it left, as it leaves its carrier's mass now
 void FixDustDetach::place_of(const Loss &loss, double *x) const
 {
-  const double flight = (double(update->ntimestep) - loss[LOSS_TIME]) * update->dt;
+  const double flight = clock - loss[LOSS_TIME];
   for (int d = 0; d < 3; d++) x[d] = loss[LOSS_X + d] + flight * loss[LOSS_V + d];
 }
 
 // of all ranks and on all, in an order that does not depend on their number
 std::vector<FixDustDetach::Loss> FixDustDetach::all_losses() const
 {
-  const int count = static_cast<int>(losses.size()) * NLOSS;
-  std::vector<int> counts(comm->nprocs), offsets(comm->nprocs);
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
-  std::vector<Loss> all((offsets.back() + counts.back()) / NLOSS);
-  MPI_Allgatherv(losses.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, world);
+  std::vector<Loss> all = dust_gather(losses, ALL_RANKS, world);
   std::sort(all.begin(), all.end());    // by carrier, then by grain
   return all;
 }
@@ -737,7 +753,11 @@ std::vector<FixDustDetach::Loss> FixDustDetach::all_losses() const
 
 void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<int> &carrier, std::vector<char> &leaves) const
 {
-  std::vector<int> near;    // atoms that some grain of a carrier could touch
+  // atoms along x, and those that some grain of a carrier could touch
+  std::vector<int> along(atom->nlocal + atom->nghost), near;
+  std::iota(along.begin(), along.end(), 0);
+  std::sort(along.begin(), along.end(), [this](int a, int b) { return atom->x[a][0] < atom->x[b][0]; });
+  const double largest = along.empty() ? 0.0 : *std::max_element(atom->radius, atom->radius + along.size());
   for (size_t first = 0, last; first < all.size(); first = last) {
     for (last = first + 1; last < all.size() && carrier[last] == carrier[first]; last++) {}
     const int i = carrier[first];
@@ -757,16 +777,15 @@ void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<in
       return distance2(atom->x[j], x) < sum * sum;
     };
     near.clear();
-    for (int j = 0; j < atom->nlocal + atom->nghost; j++)
-      if (atom->tag[j] != atom->tag[i] && touches(j, centre, reach)) near.push_back(j);
+    const double low = centre[0] - reach - largest, high = centre[0] + reach + largest;
+    auto j = std::lower_bound(along.begin(), along.end(), low, [this](int a, double x) { return atom->x[a][0] < x; });
+    for (; j != along.end() && atom->x[*j][0] <= high; ++j)
+      if (atom->tag[*j] != atom->tag[i] && touches(*j, centre, reach)) near.push_back(*j);
 
     for (size_t k = first; k < last; k++) {
       const double *x = places[k - first].data();
-      bool room = std::none_of(near.begin(), near.end(), [&](int j) { return touches(j, x, all[k][LOSS_RADIUS]); });
-      for (int d = 0; d < 3; d++) {
-        const bool fixed_low = domain->boundary[d][0] == FIXED, fixed_high = domain->boundary[d][1] == FIXED;
-        room = room && !(fixed_low && x[d] < domain->boxlo[d]) && !(fixed_high && x[d] > domain->boxhi[d]);
-      }
+      const bool room = !DustAtoms::beyond_fixed_border(lmp, x) &&
+          std::none_of(near.begin(), near.end(), [&](int j) { return touches(j, x, all[k][LOSS_RADIUS]); });
       leaves[k] = room;
     }
   }
@@ -874,7 +893,8 @@ void FixDustDetach::set_arrays(int i)
 }
 
 /* ----------------------------------------------------------------------
-   layout: words of a texture or 0, state, columns, mass of the window, first contact, orientation and angle, bits, collision
+   layout: words of a texture or 0, state, columns, mass of the window, first contact, orientation and angle, bits,
+   collision
 ------------------------------------------------------------------------- */
 
 int FixDustDetach::fixed_size() const
@@ -893,10 +913,11 @@ int FixDustDetach::orientation_size() const
 }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
-void FixDustDetach::make_room(int size)
+void FixDustDetach::make_exchange_room(const Dust::Collision &collision)
 {
-  room = 2 * size;
-  maxexchange = fixed_size() + 1 + room;
+  if (collision.packed_size() <= exchange_room) return;
+  exchange_room = 2 * collision.packed_size();
+  maxexchange = fixed_size() + 1 + exchange_room;
 }
 
 int FixDustDetach::packed_size(int i) const
@@ -951,7 +972,7 @@ void FixDustDetach::unpack(int i, const double *buf)
   if (state[i] == 0) {
     state[i] = start_collision();
     collisions[state[i]].unpack(p);
-    if (collisions[state[i]].packed_size() > room) make_room(collisions[state[i]].packed_size());
+    make_exchange_room(collisions[state[i]]);
   }
 }
 
@@ -975,7 +996,7 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  std::vector<double> list = {texture_checksum, double(orientation_size())};
+  std::vector<double> list = {texture_checksum, double(orientation_size()), double(lose_mass), clock};
   Totals total;
   MPI_Reduce(&mine, &total, sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
   const auto *p = reinterpret_cast<const double *>(&total);
@@ -986,31 +1007,17 @@ void FixDustDetach::write_restart(FILE *fp)
   const bool fits = count * sizeof(Row) < 2.0e9;
   if (!fits && comm->me == 0)
     error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id, count);
-  for (const auto *window : {&events, &rows}) {
-    const std::vector<double> all = fits ? gather(*window) : std::vector<double>();
-    list.push_back(double(all.size()));
-    list.insert(list.end(), all.begin(), all.end());
-  }
-  const std::vector<Loss> under_way = all_losses();
-  list.push_back(double(under_way.size()));
-  for (const Loss &loss : under_way) list.insert(list.end(), loss.begin(), loss.end());
+  const auto append = [&list](const auto &records) {
+    list.push_back(double(records.size()));
+    for (const auto &record : records) list.insert(list.end(), record.begin(), record.end());
+  };
+  for (const auto *window : {&events, &rows}) append(fits ? dust_gather(*window, 0, world) : std::vector<Row>());
+  append(all_losses());
   if (comm->me == 0) {
     const int size = static_cast<int>(list.size() * sizeof(double));
     fwrite(&size, sizeof(int), 1, fp);
     fwrite(list.data(), size, 1, fp);
   }
-}
-
-// the rows of all ranks, on rank 0
-std::vector<double> FixDustDetach::gather(const std::vector<Row> &window) const
-{
-  const int count = static_cast<int>(window.size() * NROW);
-  std::vector<int> counts(comm->nprocs), offsets(comm->nprocs);
-  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
-  std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
-  std::vector<double> all(comm->me == 0 ? offsets.back() + counts.back() : 0);
-  MPI_Gatherv(window.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, 0, world);
-  return all;
 }
 
 void FixDustDetach::restart(char *buf)
@@ -1022,6 +1029,10 @@ void FixDustDetach::restart(char *buf)
   if (checksum != 0.0 && *p != orientation_size())
     error->all(FLERR, "Fix dust/detach rotation or orientation is not that of the restart file");
   p++;
+  if (checksum != 0.0 && *p != double(lose_mass))
+    error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}", *p != 0.0 ? "yes" : "no");
+  p++;
+  clock = *p++;
   mine = Totals{};
   events.clear();
   rows.clear();
@@ -1029,15 +1040,13 @@ void FixDustDetach::restart(char *buf)
   if (comm->me == 0) {
     std::memcpy(&mine, p, sizeof(Totals));
     p += sizeof(Totals) / sizeof(double);
-    for (auto *window : {&events, &rows}) {
-      window->resize(static_cast<size_t>(*p++) / NROW);
-      std::memcpy(window->data(), p, window->size() * sizeof(Row));
-      p += window->size() * NROW;
-    }
-  }
-  if (comm->me == 0) {
-    losses.resize(static_cast<size_t>(*p++));
-    std::memcpy(losses.data(), p, losses.size() * sizeof(Loss));
+    const auto take = [&p](auto &records) {
+      records.resize(static_cast<size_t>(*p++));
+      std::memcpy(records.data(), p, records.size() * sizeof(records[0]));
+      p += records.size() * sizeof(records[0]) / sizeof(double);
+    };
+    for (auto *window : {&events, &rows}) take(*window);
+    take(losses);
   }
   show_rows();
   newcomers = true;

@@ -17,6 +17,7 @@ FixStyle(dust/detach,FixDustDetach);
 #include "dust_options.h"
 
 #include <array>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,7 @@ class FixDustDetach : public Fix {
   void pre_exchange() override;
   void setup(int) override;
   void setup_post_neighbor() override;
+  void initial_integrate(int) override;
   void post_neighbor() override;
   void post_force(int) override;
 
@@ -79,14 +81,15 @@ class FixDustDetach : public Fix {
   Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever: TURN_EVERY steps ago at most,
   double **angle;                   // with rotation: about which the carrier has turned since
   double *window_mass;    // lost in the window that is not complete yet
-  double *began;          // step at which the present contact did
+  double *began;          // when the present contact did
+  double clock;           // time since the fix is there
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
   bool newcomers;         // atoms were added that may be carriers
   void adopt();
   void weigh();
 
   // collisions under way on this rank
-  std::vector<Dust::Collision> collisions;
+  std::deque<Dust::Collision> collisions;    // so that more of them move none
   std::vector<int> idle;
   int start_collision();
   void drop_lost_collisions();
@@ -124,10 +127,10 @@ class FixDustDetach : public Fix {
   int open_windows;    // windows to be closed until all of window_mass and its column are 0 again
   void close_window();
   void show_rows();
-  std::vector<double> gather(const std::vector<Row> &) const;
 
   // detached grains whose mass is still in their carrier's: they leave it at the end of the window
-  enum { CARRIER, GRAIN, LOSS_MASS, LOSS_RADIUS, LOSS_TIME, LOSS_X, LOSS_V = LOSS_X + 3, LOSS_SPIN = LOSS_V + 3, NLOSS = LOSS_SPIN + 3 };
+  enum { CARRIER, GRAIN, LOSS_MASS, LOSS_RADIUS, LOSS_TIME, LOSS_X, LOSS_V = LOSS_X + 3, LOSS_SPIN = LOSS_V + 3 };
+  static constexpr int NLOSS = LOSS_SPIN + 3;
   using Loss = std::array<double, NLOSS>;
   std::vector<Loss> losses;
   void shed();
@@ -141,8 +144,8 @@ class FixDustDetach : public Fix {
   bool warned;
   void look_for_soft_contacts();
 
-  int room;    // for a collision in what a carrier takes along when it changes ranks
-  void make_room(int);
+  int exchange_room;    // for a collision in what a carrier takes along when it changes ranks
+  void make_exchange_room(const Dust::Collision &);
   int fixed_size() const;
   bool oriented() const;
   int orientation_size() const;

@@ -11,6 +11,8 @@ using namespace Dust;
 
 void AccelerationHistory::clear()
 {
+  constexpr size_t KEPT = 1024;    // room for more is given back: a bed has many histories, and few are long
+  if (motions.capacity() > KEPT) motions = {};
   motions.clear();
   levels.clear();
   in_tree = 0;

@@ -181,7 +181,7 @@ void Collision::begin(const Quaternion &orientation, const double *spin)
   course = Course{};
   course.frame = orientation;
   std::copy_n(spin, 3, course.spin0);
-  record.clear();
+  if (record) record->clear();
   strong.reset();
 }
 
@@ -216,7 +216,8 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
   Course &c = course;
   Motion motion = middle;
   for (int d = 0; d < 3; d++) motion.spin[d] += 0.5 * dt * middle.angular_acceleration[d];
-  const double size2 = dot(motion.acceleration, motion.acceleration), size = std::sqrt(size2), turning = df.reach * motion.turning();
+  const double size2 = dot(motion.acceleration, motion.acceleration), size = std::sqrt(size2);
+  const double turning = df.reach * motion.turning();
   const bool may_move = size + turning > df.moving, first = c.steps == 0.0;
 
   if (weak()) {
@@ -284,7 +285,9 @@ void Collision::add(const DetachmentFunctions &df, const Motion &motion, double 
   course.steps += 1.0;
   course.time += dt;
   for (int d = 0; d < 3; d++) course.impulse[d] += motion.acceleration[d] * dt;
-  if (df.criteria.tangential == Criteria::INTEGRATE) record.add(motion.acceleration, motion.spin, dt);
+  if (df.criteria.tangential != Criteria::INTEGRATE) return;
+  if (!record) record = std::make_unique<ImpulseRecord>();
+  record->add(motion.acceleration, motion.spin, dt);
 }
 
 // after a pause longer than the burst before it, another one begins
@@ -495,9 +498,11 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
   const bool rings = df.damping >= 0.0;
   double spin0[3];
   course.frame.to_body(course.spin0, spin0);
-  record.turn_to(course.frame);
-  const MotionBound bound(record, spin0, peak_acceleration(), df.rolling, df.carrier_radius);
-  if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach))) return;
+  if (!record) return;    // begun by a run without INTEGRATE, in a restart file
+  record->turn_to(course.frame);
+  const MotionBound bound(*record, spin0, peak_acceleration(), df.rolling, df.carrier_radius);
+  if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach)))
+    return;
   if (weak()) become_strong(work);
   if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
 
@@ -564,7 +569,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
 
 std::vector<Collision::Step> Collision::steps(const double *spin0) const
 {
-  const std::vector<ImpulseRecord::Span> &spans = record.spans();
+  const std::vector<ImpulseRecord::Span> &spans = record->spans();
   const int parts = static_cast<int>(ImpulseRecord::MOST / 2 / spans.size()) + 1;    // a collision of few time steps
   std::vector<Step> found;
   found.reserve(parts * spans.size());
@@ -638,7 +643,7 @@ template <typename T> const double *get(const double *buf, T *data, size_t count
 
 int Collision::packed_size() const
 {
-  size_t size = PACKED_SIZES + numbers_of<Course>() + record.packed_size();
+  size_t size = PACKED_SIZES + numbers_of<Course>() + (record ? record->packed_size() : 0);
   if (strong)
     size += numbers_of<Strong::State>() + strong->start.size() + strong->history.kept().size() * numbers_of<Motion>();
   return static_cast<int>(size);
@@ -649,11 +654,13 @@ void Collision::pack(double *buf) const
   *buf++ = strong != nullptr;
   *buf++ = strong ? double(strong->start.size()) : 0.0;
   *buf++ = strong ? double(strong->history.kept().size()) : 0.0;
-  *buf++ = record.packed_size();
+  *buf++ = record ? record->packed_size() : 0.0;
   buf = put(buf, &course, 1);
-  record.pack(buf);
+  if (record) {
+    record->pack(buf);
+    buf += record->packed_size();
+  }
   if (!strong) return;
-  buf += record.packed_size();
   buf = put(buf, &strong->state, 1);
   buf = put(buf, strong->start.data(), strong->start.size());
   put(buf, strong->history.kept().data(), strong->history.kept().size());
@@ -666,10 +673,14 @@ void Collision::unpack(const double *buf)
   std::vector<Motion> motions(static_cast<size_t>(*buf++));
   const int recorded = static_cast<int>(*buf++);
   buf = get(buf, &course, 1);
-  record.unpack(buf, recorded);
+  record.reset();
+  if (recorded) {
+    record = std::make_unique<ImpulseRecord>();
+    record->unpack(buf, recorded);
+    buf += recorded;
+  }
   strong.reset();
   if (!was_strong) return;
-  buf += recorded;
   strong = std::make_unique<Strong>();
   buf = get(buf, &strong->state, 1);
   buf = get(buf, start.data(), start.size());

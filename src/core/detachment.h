@@ -187,7 +187,7 @@ struct Workspace {
  * - LiftOffWindow knows which grains can lift off next.
  * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
  *   holds, g_t + k g_n is a convex function of g, so the motions that the history keeps decide. */
-class Collision {
+class alignas(64) Collision {
  public:
   /*! Starts before the first step that has a contact force
    *  \param orientation  of the carrier at that step
@@ -232,20 +232,22 @@ class Collision {
  private:
   static constexpr double QUIET = 3.0, WEAK_QUIET = 0.1;
 
-  struct Course {                 // in space
-    double time;
-    double impulse[3];            // contact force/carrier mass, integrated since begin()
-    double steps;                 // so far
-    double burst, lively_end;     // of them, when the present or last lively ones began and ended
-    Quaternion frame;             // the carrier at first contact
-    double spin0[3];              // before contact
-    // of the weak time
-    double turned[3];             // angle about which the carrier turned
-    Motion largest;               // of the largest acceleration, with its square and the angle until then
-    double largest2, largest_turned[3];
-  } course;
-  ImpulseRecord record;              // with INTEGRATE only
+  // what a step of a weak collision needs comes first, as a bed has more of them than a cache
   std::unique_ptr<Strong> strong;    // from when inertia could make a grain slide
+  struct Course {                    // in space
+    double time;
+    double impulse[3];               // contact force/carrier mass, integrated since begin()
+    double steps;                    // so far
+    double burst, lively_end;        // of them, when the present or last lively ones began and ended
+    // of the weak time
+    double largest2;                 // square of the largest acceleration
+    double turned[3];                // angle about which the carrier turned
+    Motion largest;                  // that of the largest acceleration, and the angle until then
+    double largest_turned[3];
+    Quaternion frame;                // the carrier at first contact
+    double spin0[3];                 // before contact
+  } course;
+  std::unique_ptr<ImpulseRecord> record;    // with INTEGRATE only, from the first step
 
   void become_strong(Workspace &work);
   void add(const DetachmentFunctions &functions, const Motion &motion, double dt);

@@ -4,6 +4,7 @@
 
 #include "hamaker.h"
 #include "jkr.h"
+#include "vec.h"
 
 #include <gtest/gtest.h>
 
@@ -22,15 +23,6 @@ const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20),
 const double GRAIN_MASS = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0;
 const double HOLD = pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / GRAIN_MASS;
 
-struct Vec {
-  double x, y, z;
-};
-Vec operator*(double s, const Vec &v) { return {s * v.x, s * v.y, s * v.z}; }
-Vec operator+(const Vec &a, const Vec &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator-(const Vec &a, const Vec &b) { return a + -1.0 * b; }
-double dot(const Vec &a, const Vec &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(const Vec &a, const Vec &b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double size(const Vec &v) { return std::sqrt(dot(v, v)); }
 
 // by an angle |v| about v (Rodrigues)
 Vec turned(const Vec &x, const Vec &v)

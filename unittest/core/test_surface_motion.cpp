@@ -9,6 +9,7 @@
 #include "jkr.h"
 #include "motion_bound.h"
 #include "normal_motion.h"
+#include "vec.h"
 
 #include <gtest/gtest.h>
 
@@ -28,15 +29,6 @@ const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20),
                           combined_modulus(75.0e9, 0.3, 210.0e9, 0.3), 0.3, 0.15};
 const double HOLD = pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / (4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0);
 
-struct Vec {
-  double x = 0.0, y = 0.0, z = 0.0;
-};
-Vec operator*(double s, const Vec &v) { return {s * v.x, s * v.y, s * v.z}; }
-Vec operator+(const Vec &a, const Vec &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator-(const Vec &a, const Vec &b) { return a + -1.0 * b; }
-double dot(const Vec &a, const Vec &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(const Vec &a, const Vec &b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double size(const Vec &v) { return std::sqrt(dot(v, v)); }
 Vec along_surface(const Vec &v, const Vec &n) { return v - dot(v, n) * n; }
 
 // a collision: contact acceleration and spin of each step

@@ -162,7 +162,7 @@ TEST(FixDustDetach, RestartInTheMiddleOfACollisionIsExact)
   }
 }
 
-TEST(FixDustDetach, ARestartWithAnotherTextureIsRefused)
+TEST(FixDustDetach, ARestartWithAnotherTextureRotationOrMassIsRefused)
 {
   Deck deck;
   deck.box();
@@ -170,10 +170,19 @@ TEST(FixDustDetach, ARestartWithAnotherTextureIsRefused)
   deck.wall_and_motion();
   dust(deck);
   deck("run 10 post no\nwrite_restart dust_restart_other");
-  for (const char *other : {"texture monolayer 20e-6 coverage 0.2 seed 2", "texture monolayer 20e-6 coverage 0.1 seed 1"}) {
+  const std::string same = REFERENCE_DUST;
+  const std::pair<std::string, std::string> others[] = {{"texture monolayer 20e-6 coverage 0.2 seed 2", "texture"},
+                                                        {"texture monolayer 20e-6 coverage 0.1 seed 1", "texture"},
+                                                        {same + " rotation no", "rotation"},
+                                                        {same + " mass yes", "mass"},
+                                                        {same, ""}};
+  for (const auto &[options, word] : others) {
     Deck rest;
     rest("read_restart dust_restart_other\ncomm_modify vel yes");
-    EXPECT_NE(rest.attempt(std::string("fix dust all dust/detach ") + other).find("restart"), std::string::npos);
+    const std::string error = rest.attempt("fix dust all dust/detach " + options);
+    EXPECT_EQ(error.empty(), word.empty()) << error;
+    EXPECT_NE(error.find(word), std::string::npos) << error;
+    EXPECT_EQ(error.find("restart") == std::string::npos, word.empty()) << error;
   }
   std::remove("dust_restart_other");
 }

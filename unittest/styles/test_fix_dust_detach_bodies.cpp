@@ -236,6 +236,18 @@ TEST(FixDustDetachBodies, ACarrierAtRestLosesNothingUntilItIsHit)
   EXPECT_GT(deck.columns(1)[1], 0.0);    // through the others, also from the lowest
 }
 
+// mass and momentum of all atoms
+const char *const BALANCE = "variable m equal mass(all)\nvariable px equal mass(all)*vcm(all,x)\n"
+                            "variable py equal mass(all)*vcm(all,y)\nvariable pz equal mass(all)*vcm(all,z)";
+
+double variable(const Deck &deck, const char *name)
+{
+  auto *p = static_cast<double *>(lammps_extract_variable(deck.lmp, name, nullptr));
+  const double x = *p;
+  lammps_free(p);
+  return x;
+}
+
 // mass yes: what the carriers weigh and what has come off is the mass at first; a grain takes its momentum with it
 TEST(FixDustDetachBodies, MassAndMomentumOfWhatComesOff)
 {
@@ -246,14 +258,8 @@ TEST(FixDustDetachBodies, MassAndMomentumOfWhatComesOff)
   spin(deck, 1, 3000, 0, 1000);
   deck("fix move all nve/sphere\nfix_modify move energy no");
   dust(deck, "mass yes orientation random 4 every 50");
-  deck("variable m equal mass(all)\nvariable px equal mass(all)*vcm(all,x)\nvariable py equal mass(all)*vcm(all,y)\n"
-       "variable pz equal mass(all)*vcm(all,z)");
-  const auto value = [&](const char *name) {
-    auto *p = static_cast<double *>(lammps_extract_variable(deck.lmp, name, nullptr));
-    const double x = *p;
-    lammps_free(p);
-    return x;
-  };
+  deck(BALANCE);
+  const auto value = [&](const char *name) { return variable(deck, name); };
   const double bare = 2.0 * 4.0 / 3.0 * M_PI * RADIUS * RADIUS * RADIUS * 7700.0;
   deck("run 0");
   EXPECT_NEAR(value("m"), bare + deck.global(8), 1e-14 * bare);
@@ -288,14 +294,8 @@ TEST(FixDustDetachBodies, EmittedGrainsKeepMassAndMomentum)
   deck("pair_coeff 1 2 hertz/material 1.0 0.5 0.3 tangential linear_nohistory 0.0 0.0 damping coeff_restitution/limited\n"
        "pair_coeff 2 2 hertz/material 1.0 0.5 0.3 tangential linear_nohistory 0.0 0.0 damping coeff_restitution/limited\nfix move all nve/sphere");
   deck("fix dust carriers dust/detach texture monolayer 20e-6 coverage 0.03 seed 1 emit 2 orientation random 4");
-  deck("variable m equal mass(all)\nvariable px equal mass(all)*vcm(all,x)\nvariable py equal mass(all)*vcm(all,y)\n"
-       "variable pz equal mass(all)*vcm(all,z)");
-  const auto value = [&](const char *name) {
-    auto *p = static_cast<double *>(lammps_extract_variable(deck.lmp, name, nullptr));
-    const double x = *p;
-    lammps_free(p);
-    return x;
-  };
+  deck(BALANCE);
+  const auto value = [&](const char *name) { return variable(deck, name); };
   deck("run 0");
   const double mass = value("m"), p[3] = {value("px"), value("py"), value("pz")}, scale = mass * 9.0;
   for (int k = 0; k < 40; k++) {
