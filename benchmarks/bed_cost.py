@@ -75,8 +75,9 @@ def run(deck: str, processes: int = 1) -> tuple[list[float], list[float]]:
 
 def compare(deck: str, fix: str, unfix: str, pairs: int, steps: int, carriers: int) -> dict[str, float]:
     """Segments with and without the fix in turn, after `deck`."""
-    segments = f"{fix}run 60\nrun {steps}\n{unfix}run {steps}\n"
-    times, (before, after) = run(f"{deck}info memory\n{pairs * segments}info memory\n")
+    with_fix, without = f"{fix}run 60\nrun {steps}\n", f"{unfix}run {steps}\n"
+    segments = f"info memory\n{with_fix}info memory\n{without}{(pairs - 1) * (with_fix + without)}"
+    times, (before, after) = run(deck + segments)
     times = times[-3 * pairs :]
     fastest = {"with": min(times[1::3]), "without": min(times[2::3])}
     row = {

@@ -263,8 +263,8 @@ void FixDustDetach::check_order() const
 }
 
 /* ----------------------------------------------------------------------
-   carriers that are in contact at the very start: nothing has counted this force yet. Others have been counted by the
-   run before, or by the one that wrote the restart file.
+   carriers that are in contact at the very start: nothing has counted this force yet. They are at rest unless it can make a
+   grain slide. Others have been counted by the run before, or by the one that wrote the restart file.
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::setup(int /*vflag*/)
@@ -272,9 +272,11 @@ void FixDustDetach::setup(int /*vflag*/)
   const double *const *f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || state[i] != FREE_FLIGHT) continue;
-    if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0)
+    if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0) {
+      state[i] = AT_REST;
+      began[i] = clock;
       collide(i);
-    else
+    } else
       spin_off(i);
   }
 }
