@@ -4,9 +4,9 @@
 set(DUST_SOURCE_DIR "${CMAKE_CURRENT_LIST_DIR}/../src")
 get_filename_component(DUST_SOURCE_DIR "${DUST_SOURCE_DIR}" ABSOLUTE)
 file(GLOB DUST_CORE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/core/*.cpp")
-# changes no result, but a square root that may set errno keeps the compiler from working on several grains at once
-set_source_files_properties("${DUST_SOURCE_DIR}/core/surface_motion.cpp" "${DUST_SOURCE_DIR}/core/normal_motion.cpp"
-                            PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
+# changes no result, but a square root that may set errno costs a branch, and keeps the compiler from working on several
+# grains at once
+set_source_files_properties(${DUST_CORE_SOURCES} PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
 file(GLOB DUST_STYLE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/*.cpp")
 foreach(kind gran_sub_mod fix compute command)
   set(pattern ${kind})

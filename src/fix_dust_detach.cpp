@@ -362,35 +362,41 @@ void FixDustDetach::post_force(int /*vflag*/)
   const double dt = update->dt;
   const int *const states = state;    // does not move in this loop
 
+  const bool busy = idle.size() < collisions.size();
+
   const auto squared = [](const double *v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-  for (int i = 0; i < nlocal; i++, f += 3) {
+  constexpr int BLOCK = 256;    // spins that are asked for twice are still in the cache then
+  for (int first = 0; first < nlocal; first += BLOCK) {
+    const int last = std::min(first + BLOCK, nlocal);
     if (spins)    // all atoms: it costs less than to ask which are carriers
-      for (int d = 3 * i; d < 3 * i + 3; d++) turned[d] += dt * omega[d];
-    // collisions are in no order, and a bed has more of them than a cache: those of atoms to come are fetched now
-    constexpr int AHEAD = 24;
-    if (i + AHEAD < nlocal && states[i + AHEAD] >= 0) {
-      const auto *lines = reinterpret_cast<const char *>(&collisions[states[i + AHEAD]]);
-      __builtin_prefetch(lines, 1);
-      __builtin_prefetch(lines + 64, 1);
+      for (int d = 3 * first; d < 3 * last; d++) turned[d] += dt * omega[d];
+    for (int i = first; i < last; i++, f += 3) {
+      // collisions are in no order, and a bed has more of them than a cache: those of atoms to come are fetched now
+      constexpr int AHEAD = 24;
+      if (busy && i + AHEAD < nlocal && states[i + AHEAD] >= 0) {
+        const auto *lines = reinterpret_cast<const char *>(&collisions[states[i + AHEAD]]);
+        __builtin_prefetch(lines, 1);
+        __builtin_prefetch(lines + 64, 1);
+      }
+      // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
+      uint64_t x, y, z;
+      std::memcpy(&x, f, sizeof(x));
+      std::memcpy(&y, f + 1, sizeof(y));
+      std::memcpy(&z, f + 2, sizeof(z));
+      const bool touches = (x | y | z) << 1;
+      if (!touches && states[i] <= FREE_FLIGHT) continue;
+      if (touches && states[i] == AT_REST) {    // what most carriers of a bed do
+        const double torque2 = spins ? squared(torque + 3 * i) : 0.0, spin2 = spins ? squared(omega + 3 * i) : 0.0;
+        if (!functions->might_move(squared(f), torque2, spin2, stiffen_time * rmass[i])) continue;
+      }
+      if (!(mask[i] & groupbit) || states[i] == NO_CARRIER) continue;
+      if (touches)
+        collide(i);
+      else if (states[i] >= 0)
+        finish_collision(i, FREE_FLIGHT);
+      else if (states[i] == AT_REST)
+        leave_contact(i);
     }
-    // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
-    uint64_t x, y, z;
-    std::memcpy(&x, f, sizeof(x));
-    std::memcpy(&y, f + 1, sizeof(y));
-    std::memcpy(&z, f + 2, sizeof(z));
-    const bool touches = (x | y | z) << 1;
-    if (!touches && states[i] <= FREE_FLIGHT) continue;
-    if (touches && states[i] == AT_REST) {    // what most carriers of a bed do
-      const double torque2 = spins ? squared(torque + 3 * i) : 0.0, spin2 = spins ? squared(omega + 3 * i) : 0.0;
-      if (!functions->might_move(squared(f), torque2, spin2, stiffen_time * rmass[i])) continue;
-    }
-    if (!(mask[i] & groupbit) || states[i] == NO_CARRIER) continue;
-    if (touches)
-      collide(i);
-    else if (states[i] >= 0)
-      finish_collision(i, FREE_FLIGHT);
-    else if (states[i] == AT_REST)
-      leave_contact(i);
   }
   if (spins && update->ntimestep % TURN_EVERY == 0) turn();
   if (update->ntimestep % every != 0) return;

@@ -41,6 +41,7 @@ void AccelerationHistory::add(const Motion &motion, double size2, bool turns)
     while (n && covers(motion, size2, motions[n - 1])) n--;
   }
   motions.resize(n);
+  if (n == motions.capacity()) motions.reserve(std::max<size_t>(16, 4 * n));    // copies a third of them in all
   motions.push_back(motion);
   in_tree = std::min(in_tree, n);
   if (size2 > size2_of_peak || largest >= n) {
