@@ -22,7 +22,7 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 LMP = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build")) / "bin/lmp-dust"
 GRAINS = 4500
-EXTRA = {"drum": ["-var", "carriers", "5000", "-var", "turns", "0.5"], "drop": ["-var", "field", "field"], "pour": []}
+EXTRA = {"drum": ["-var", "turns", "0.5"], "drop": ["-var", "field", "field"], "pour": []}
 WALL = {"color": "0.35", "linewidth": 1.2}
 
 

@@ -8,7 +8,6 @@ the functions with both tangential methods on the same inputs, and writes bodies
 """
 
 import argparse
-import csv
 import json
 import os
 import re
@@ -20,6 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from machine import description
+from rows import read, write
 
 ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "benchmarks/bodies"
@@ -93,7 +93,7 @@ def run_deck(deck: str, variables: dict[str, str], case: tuple[str, ...]) -> lis
         command += ["-var", name, value]
     started = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+        done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)} failed:\n{done.stdout[-2000:]}")
     shared = {
@@ -124,22 +124,6 @@ def variables_of(case: tuple[str, ...], names: tuple[str, ...]) -> dict[str, str
 
 def key(row: dict[str, str]) -> tuple[str, ...]:
     return tuple(row[name] for name in CASE)
-
-
-def read(path: Path) -> list[dict[str, str]]:
-    if not path.exists():
-        return []
-    with path.open() as stream:
-        return list(csv.DictReader(stream))
-
-
-def write(path: Path, columns: tuple[str, ...], rows: list[dict[str, str]]) -> None:
-    part = path.with_suffix(".part")
-    with part.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, columns, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    part.replace(path)
 
 
 def run() -> None:

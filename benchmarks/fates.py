@@ -5,7 +5,6 @@
 Grain i of the texture is the same in both methods. Writes impacts/fates.csv and impacts/fates.png.
 """
 
-import csv
 import tempfile
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from dustdetach import Impact, run
 from dustdetach.frames import Frame, frame_sizes, read_frames
 from dustdetach.pictures import read_fates
 from numpy.typing import NDArray
+from rows import write
 from scipy.spatial import cKDTree
 
 HERE = Path(__file__).resolve().parent / "impacts"
@@ -108,10 +108,7 @@ def main() -> None:
         panel.set_ylabel("Share detached")
     axes[1, 0].set_xticks(range(0, 181, 30))
     figure.savefig(HERE / "fates.png", dpi=150)
-    with (HERE / "fates.csv").open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, KEYS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write(HERE / "fates.csv", KEYS, rows)
 
 
 if __name__ == "__main__":

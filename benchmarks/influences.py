@@ -7,7 +7,6 @@ variables, or another word in the deck. Straight impacts, e 0.7, seed 1.
 """
 
 import argparse
-import csv
 import os
 import re
 import subprocess
@@ -15,6 +14,8 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+from rows import read, write
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
@@ -92,7 +93,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
-    rows = list(csv.DictReader(TABLE.open())) if TABLE.exists() else []
+    rows = read(TABLE)
     wanted = [(name, speed) for name, (_, _, speeds) in VARIANTS.items() for speed in speeds]
     done = {(row["variant"], int(row["speed"])) for row in rows}
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -100,12 +101,7 @@ def main() -> None:
             rows.append(row)
             print(", ".join(row.values()), flush=True)
             rows.sort(key=lambda row: wanted.index((row["variant"], int(row["speed"]))))
-            part = TABLE.with_suffix(".part")
-            with part.open("w", newline="") as stream:
-                writer = csv.DictWriter(stream, KEYS, lineterminator="\n")
-                writer.writeheader()
-                writer.writerows(rows)
-            part.replace(TABLE)
+            write(TABLE, KEYS, rows)
 
 
 if __name__ == "__main__":

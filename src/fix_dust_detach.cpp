@@ -46,7 +46,7 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
-    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), began(nullptr), clock(0.0),
+    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), steps(0.0), began(nullptr),
     newcomers(true), mine{}, open_windows(0), too_soft(1.0), warned(false), exchange_room(0)
 {
   parse(narg, arg);
@@ -274,7 +274,7 @@ void FixDustDetach::setup(int /*vflag*/)
     if (!(atom->mask[i] & groupbit) || state[i] != FREE_FLIGHT) continue;
     if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0) {
       state[i] = AT_REST;
-      began[i] = clock;
+      began[i] = steps;
       collide(i);
     } else
       spin_off(i);
@@ -338,12 +338,12 @@ void FixDustDetach::weigh()
 }
 
 /* ----------------------------------------------------------------------
-   a clock of its own, as the user may reset the number of the step or change its length
+   counts of its own, as the user may reset the number of the step
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::initial_integrate(int /*vflag*/)
 {
-  clock += update->dt;
+  steps += 1.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -445,7 +445,7 @@ void FixDustDetach::collide(int i)
 {
   const Dust::Motion motion = motion_of(i);
   if (state[i] == AT_REST && !functions->may_move(motion)) return;
-  if (state[i] == FREE_FLIGHT) began[i] = clock;
+  if (state[i] == FREE_FLIGHT) began[i] = steps;
   if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
   if (collision.step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
@@ -492,7 +492,7 @@ void FixDustDetach::finish_collision(int i, int next)
 void FixDustDetach::leave_contact(int i)
 {
   state[i] = FREE_FLIGHT;
-  array_atom[i][CONTACT_TIME] = (clock - began[i]) * stiffen_time;
+  array_atom[i][CONTACT_TIME] = (steps - began[i]) * stiffen_time * update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -568,7 +568,7 @@ void FixDustDetach::record(int i)
     if (lose_mass) {
       const double *spin = atom->omega[i];
       losses.push_back({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(), grain.radius,
-                        clock, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1], spin[2]});
+                        steps, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1], spin[2]});
     }
   }
   mine.weight += lost;
@@ -743,7 +743,7 @@ void FixDustDetach::shed()
 // in free flight since it left, as it leaves its carrier's mass now
 void FixDustDetach::place_of(const Loss &loss, double *x) const
 {
-  const double flight = clock - loss[LOSS_TIME];
+  const double flight = (steps - loss[LOSS_STEP]) * update->dt;
   for (int d = 0; d < 3; d++) x[d] = loss[LOSS_X + d] + flight * loss[LOSS_V + d];
 }
 
@@ -1004,7 +1004,7 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  std::vector<double> list = {texture_checksum, double(orientation_size()), double(lose_mass), clock};
+  std::vector<double> list = {texture_checksum, double(orientation_size()), double(lose_mass), steps};
   Totals total;
   MPI_Reduce(&mine, &total, sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
   const auto *p = reinterpret_cast<const double *>(&total);
@@ -1040,7 +1040,7 @@ void FixDustDetach::restart(char *buf)
   if (checksum != 0.0 && *p != double(lose_mass))
     error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}", *p != 0.0 ? "yes" : "no");
   p++;
-  clock = *p++;
+  steps = *p++;
   mine = Totals{};
   events.clear();
   rows.clear();

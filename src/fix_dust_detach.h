@@ -81,8 +81,8 @@ class FixDustDetach : public Fix {
   Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever: TURN_EVERY steps ago at most,
   double **angle;                   // with rotation: about which the carrier has turned since
   double *window_mass;    // lost in the window that is not complete yet
-  double *began;          // when the present contact did
-  double clock;           // time since the fix is there
+  double steps;           // since the fix is there
+  double *began;          // of them, when the present contact did
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
   bool newcomers;         // atoms were added that may be carriers
   void adopt();
@@ -129,7 +129,7 @@ class FixDustDetach : public Fix {
   void show_rows();
 
   // detached grains whose mass is still in their carrier's: they leave it at the end of the window
-  enum { CARRIER, GRAIN, LOSS_MASS, LOSS_RADIUS, LOSS_TIME, LOSS_X, LOSS_V = LOSS_X + 3, LOSS_SPIN = LOSS_V + 3 };
+  enum { CARRIER, GRAIN, LOSS_MASS, LOSS_RADIUS, LOSS_STEP, LOSS_X, LOSS_V = LOSS_X + 3, LOSS_SPIN = LOSS_V + 3 };
   static constexpr int NLOSS = LOSS_SPIN + 3;
   using Loss = std::array<double, NLOSS>;
   std::vector<Loss> losses;

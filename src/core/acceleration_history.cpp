@@ -41,7 +41,8 @@ void AccelerationHistory::add(const Motion &motion, double size2, bool turns)
     while (n && covers(motion, size2, motions[n - 1])) n--;
   }
   motions.resize(n);
-  if (n == motions.capacity()) motions.reserve(std::max<size_t>(16, 4 * n));    // copies a third of them in all
+  // the short ones of soft contacts waste little, the long ones of stiff impacts are seldom copied
+  if (n == motions.capacity()) motions.reserve(std::max<size_t>(8, n < 64 ? 2 * n : 4 * n));
   motions.push_back(motion);
   in_tree = std::min(in_tree, n);
   if (size2 > size2_of_peak || largest >= n) {

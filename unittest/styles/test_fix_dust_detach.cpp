@@ -162,6 +162,23 @@ TEST(FixDustDetach, RestartInTheMiddleOfACollisionIsExact)
   }
 }
 
+TEST(FixDustDetach, StepsNumberedAnewInTheMiddleOfACollisionChangeNothing)
+{
+  const auto run = [](const std::string &between) {
+    Deck deck;
+    deck.box();
+    deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
+    deck.wall_and_motion();
+    dust(deck);
+    deck("run 1500 post no\n" + between + "\nrun 4000 post no");
+    return deck.columns(1);
+  };
+  const std::vector<double> columns = run("");
+  EXPECT_GT(columns[3], 1.0e-6);    // the contact lies in both runs
+  EXPECT_EQ(run("reset_timestep 0"), columns);
+  EXPECT_EQ(run("reset_timestep 1000000"), columns);
+}
+
 TEST(FixDustDetach, ARestartWithAnotherTextureRotationOrMassIsRefused)
 {
   Deck deck;
