@@ -211,7 +211,7 @@ void FixDustDetach::build()
 
 int FixDustDetach::setmask()
 {
-  return INITIAL_INTEGRATE | POST_NEIGHBOR | POST_FORCE | (lose_mass ? PRE_EXCHANGE : 0);
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -683,12 +683,14 @@ double FixDustDetach::memory_usage()
 
 void FixDustDetach::setup_pre_exchange()
 {
+  share_exchange_room();
   if (lose_mass) shed();
 }
 
 void FixDustDetach::pre_exchange()
 {
-  if (update->ntimestep == next_reneighbor) shed();
+  share_exchange_room();
+  if (lose_mass && update->ntimestep == next_reneighbor) shed();
 }
 
 void FixDustDetach::shed()
@@ -928,6 +930,13 @@ void FixDustDetach::make_exchange_room(const Dust::Collision &collision)
   maxexchange = fixed_size() + 1 + exchange_room;
 }
 
+// the same on all ranks: one may take in a carrier along x and hand it on along y in the same exchange
+void FixDustDetach::share_exchange_room()
+{
+  MPI_Allreduce(MPI_IN_PLACE, &exchange_room, 1, MPI_INT, MPI_MAX, world);
+  maxexchange = fixed_size() + 1 + exchange_room;
+}
+
 int FixDustDetach::packed_size(int i) const
 {
   if (state[i] == NO_CARRIER) return 1;
@@ -1010,11 +1019,15 @@ void FixDustDetach::write_restart(FILE *fp)
   const auto *p = reinterpret_cast<const double *>(&total);
   list.insert(list.end(), p, p + sizeof(Totals) / sizeof(double));
   // LAMMPS counts the bytes of a fix's restart data as int
-  double count = double(events.size() + rows.size());
-  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_DOUBLE, MPI_SUM, world);
-  const bool fits = count * sizeof(Row) < 2.0e9;
+  constexpr double MOST = 2.0e9;
+  double bytes[2] = {double(events.size() + rows.size()) * sizeof(Row), double(losses.size()) * sizeof(Loss)};
+  MPI_Allreduce(MPI_IN_PLACE, bytes, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (bytes[1] > MOST)
+    error->all(FLERR, "Fix dust/detach {}: a restart file cannot hold the {} grains that are to leave their carriers' mass: use a "
+               "smaller every", id, bytes[1] / sizeof(Loss));
+  const bool fits = bytes[0] + bytes[1] < MOST;
   if (!fits && comm->me == 0)
-    error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id, count);
+    error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id, bytes[0] / sizeof(Row));
   const auto append = [&list](const auto &records) {
     list.push_back(double(records.size()));
     for (const auto &record : records) list.insert(list.end(), record.begin(), record.end());

@@ -146,6 +146,7 @@ class FixDustDetach : public Fix {
 
   int exchange_room;    // for a collision in what a carrier takes along when it changes ranks
   void make_exchange_room(const Dust::Collision &);
+  void share_exchange_room();
   int fixed_size() const;
   bool oriented() const;
   int orientation_size() const;

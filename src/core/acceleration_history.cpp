@@ -119,21 +119,16 @@ double AccelerationHistory::largest_push(const double *n, double shell, size_t &
            }
            return false;
          });
-  return std::max(0.0, most);
+  return most;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void AccelerationHistory::assign(const Motion *first, size_t count)
+void AccelerationHistory::assign(const Motion *first, size_t count, size_t peak_index, double peak2)
 {
   clear();
   motions.assign(first, first + count);
-  for (size_t i = 0; i < count; i++) {
-    const double size2 = dot(motions[i].acceleration, motions[i].acceleration);
-    turned = turned || motions[i].turns();
-    if (size2 > size2_of_peak) {
-      largest = i;
-      size2_of_peak = size2;
-    }
-  }
+  for (const Motion &m : motions) turned = turned || m.turns();
+  largest = peak_index;
+  size2_of_peak = peak2;
 }

@@ -40,7 +40,7 @@ class AccelerationHistory {
 
   /*! Adds a motion
    *  \param size2  square of its acceleration
-   *  \param turns  Motion::turns() */
+   *  \param turns  whether its angular acceleration or spin matter */
   void add(const Motion &motion, double size2, bool turns);
 
   bool empty() const { return motions.empty(); }
@@ -49,7 +49,7 @@ class AccelerationHistory {
   double peak2() const { return size2_of_peak; }
   bool any_turns() const { return turned; }
 
-  /*! Largest push on a grain, a.n less the centrifugal acceleration, if it is positive for some motion, else 0
+  /*! Largest push on a grain, a.n less the centrifugal acceleration; there must be a motion
    *  \param hint  0 at first; keeps the answer's place, which is near that for a similar direction */
   double largest_push(const double *n, double shell, size_t &hint) const;
 
@@ -66,7 +66,9 @@ class AccelerationHistory {
 
   /*! Its motions, for transfer to another rank and restart */
   const std::vector<Motion> &kept() const { return motions; }
-  void assign(const Motion *first, size_t count);
+  size_t peak_index() const { return largest; }
+  /*! \param peak_index, peak2  as they were: to round-off, accelerations are as large in other axes */
+  void assign(const Motion *first, size_t count, size_t peak_index, double peak2);
 
  private:
   static constexpr size_t BRANCH = 8;
@@ -81,7 +83,7 @@ class AccelerationHistory {
   mutable std::vector<std::vector<Sphere>> levels;
   mutable size_t in_tree = 0;    // the first motions: as they were when the tree was last up to date
   size_t largest = 0;
-  bool turned = false;    // whether any motion did that was kept for a while
+  bool turned = false;    // whether any motion turned that was kept for a while
   double size2_of_peak = 0.0;
 
   Sphere member(size_t level, size_t i) const;

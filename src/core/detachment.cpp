@@ -22,6 +22,7 @@ using namespace Dust;
 
 namespace {
 
+constexpr double ROUND_OFF = 1.0e-12;    // turning that adds no more to g than this part of it does not count
 constexpr double INF = std::numeric_limits<double>::infinity();
 
 // orders grains so that each run of PATCH is a compact patch: halves the set across its longest side, again and again
@@ -118,7 +119,7 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
       patch.largest_lever = std::max(patch.largest_lever, site.lever);
     });
     const double size = std::sqrt(dot(patch.centre, patch.centre));
-    for (double &x : patch.centre) x /= size;
+    for (int d = 0; d < 3; d++) patch.centre[d] = size > 0.0 ? patch.centre[d] / size : site_at(0).n[d];
     each_bit(all[p], [&](int k) {
       const double *n = site_at(k).n;
       const double r[3] = {n[0] - patch.centre[0], n[1] - patch.centre[1], n[2] - patch.centre[2]};
@@ -192,7 +193,7 @@ void Collision::release(Workspace &work)
 
 /* ---------------------------------------------------------------------- */
 
-void Collision::become_strong(Workspace &work)
+void Collision::become_strong(const DetachmentFunctions &df, Workspace &work)
 {
   if (work.idle.empty()) work.idle.push_back(std::make_unique<Strong>());
   strong = std::move(work.idle.back());
@@ -203,10 +204,9 @@ void Collision::become_strong(Workspace &work)
   strong->start.clear();
   strong->history.clear();
   strong->window.close();
-  if (course.steps > 0.0) {
-    const Motion largest = largest_of_weak();
-    strong->history.add(largest, course.largest2, largest.turns());
-  }
+  if (course.steps == 0.0) return;
+  const bool turns = df.reach * course.largest.turning() > ROUND_OFF * std::sqrt(course.largest2);
+  strong->history.add(largest_of_weak(), course.largest2, turns);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -232,7 +232,7 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
       mark_lively();
       return false;
     }
-    become_strong(work);
+    become_strong(df, work);
   } else
     strong->state.now.turn_by(middle.spin, dt);
 
@@ -249,12 +249,7 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
     std::copy_n(motion.spin, 3, s.state.lively.spin);
   }
 
-  constexpr double ROUND_OFF = 1.0e-12;
   const bool turns = turning > ROUND_OFF * size;
-  if (!turns) {
-    std::fill_n(motion.angular_acceleration, 3, 0.0);
-    std::fill_n(motion.spin, 3, 0.0);
-  }
   const Motion m = motion.along(s.state.now);
   const double *w = m.spin, spun = turns ? df.reach * dot(w, w) : 0.0;
   const bool may_lift = size + spun > df.least;
@@ -440,7 +435,7 @@ void Collision::estimate(const DetachmentFunctions &df, const Strong::Moment &la
   for (double &x : dv) x = -x;
   const double fastest = std::sqrt(dot(dv, dv)) + df.reach * (std::sqrt(dot(spin0, spin0)) + 2.0 * std::sqrt(dot(spin, spin)));
   if (fastest * fastest <= df.slow2) return;
-  if (weak()) become_strong(work);
+  if (weak()) become_strong(df, work);
   if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
 
   const AccelerationHistory &history = strong->history;
@@ -498,12 +493,12 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
   const bool rings = df.damping >= 0.0;
   double spin0[3];
   course.frame.to_body(course.spin0, spin0);
-  if (!record) return;    // begun by a run without INTEGRATE, in a restart file
+  if (!record) return;    // no step since a restart from a run without INTEGRATE
   record->turn_to(course.frame);
   const MotionBound bound(*record, spin0, peak_acceleration(), df.rolling, df.carrier_radius);
   if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach)))
     return;
-  if (weak()) become_strong(work);
+  if (weak()) become_strong(df, work);
   if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
 
   const AccelerationHistory &history = strong->history;
@@ -512,6 +507,7 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
   int bits[SurfaceMotion::LANES];
   static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
   const std::vector<Step> followed = steps(spin0);
+  const double weak = std::sqrt(course.largest2);
   const auto run = [&]() {
     double load[SurfaceMotion::LANES];
     for (const Step &step : followed) {
@@ -546,7 +542,8 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
           const double *a = m.acceleration;
           return turn * std::sqrt(dot(a, a)) - dot(a, site.n) - needed;
         };
-        if (needed >= 0.0 && !history.any(excess, 1.0 + turn, 0.0)) return;
+        // of the weak time the history has the largest motion only
+        if (needed >= weak * (1.0 + turn) && !history.any(excess, 1.0 + turn, 0.0)) return;
       }
       const double radius = site.shell - df.carrier_radius;
       const int lane = motion.grains();
@@ -620,7 +617,7 @@ int Collision::lost_north(const DetachmentFunctions &df, const uint64_t *attache
 
 namespace {
 
-constexpr int PACKED_SIZES = 4;
+constexpr int PACKED_SIZES = 6;
 template <typename T> constexpr size_t numbers_of()
 {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0, "travels as doubles");
@@ -629,13 +626,13 @@ template <typename T> constexpr size_t numbers_of()
 
 template <typename T> double *put(double *buf, const T *data, size_t count)
 {
-  std::memcpy(buf, data, count * sizeof(T));
+  if (count) std::memcpy(buf, data, count * sizeof(T));
   return buf + count * numbers_of<T>();
 }
 
 template <typename T> const double *get(const double *buf, T *data, size_t count)
 {
-  std::memcpy(static_cast<void *>(data), buf, count * sizeof(T));
+  if (count) std::memcpy(static_cast<void *>(data), buf, count * sizeof(T));
   return buf + count * numbers_of<T>();
 }
 
@@ -654,6 +651,8 @@ void Collision::pack(double *buf) const
   *buf++ = strong != nullptr;
   *buf++ = strong ? double(strong->start.size()) : 0.0;
   *buf++ = strong ? double(strong->history.kept().size()) : 0.0;
+  *buf++ = strong ? double(strong->history.peak_index()) : 0.0;
+  *buf++ = strong ? strong->history.peak2() : 0.0;
   *buf++ = record ? record->packed_size() : 0.0;
   buf = put(buf, &course, 1);
   if (record) {
@@ -671,6 +670,8 @@ void Collision::unpack(const double *buf)
   const bool was_strong = *buf++ != 0.0;
   std::vector<uint64_t> start(static_cast<size_t>(*buf++));
   std::vector<Motion> motions(static_cast<size_t>(*buf++));
+  const auto peak_index = static_cast<size_t>(*buf++);
+  const double peak2 = *buf++;
   const int recorded = static_cast<int>(*buf++);
   buf = get(buf, &course, 1);
   record.reset();
@@ -686,5 +687,5 @@ void Collision::unpack(const double *buf)
   buf = get(buf, start.data(), start.size());
   get(buf, motions.data(), motions.size());
   strong->start = std::move(start);
-  strong->history.assign(motions.data(), motions.size());
+  strong->history.assign(motions.data(), motions.size(), peak_index, peak2);
 }

@@ -249,7 +249,7 @@ class alignas(64) Collision {
   } course;
   std::unique_ptr<ImpulseRecord> record;    // with INTEGRATE only, from the first step
 
-  void become_strong(Workspace &work);
+  void become_strong(const DetachmentFunctions &functions, Workspace &work);
   void add(const DetachmentFunctions &functions, const Motion &motion, double dt);
   void mark_lively();
   void lift_off(const DetachmentFunctions &functions, const Motion &motion, uint64_t *attached, Workspace &work);

@@ -101,9 +101,9 @@ void LiftOffWindow::open(const DetachmentFunctions &df, const Motion &motion, co
       const double missing = site.hold - motion.lift(site.n, site.shell);
       if (missing < 0.0) {
         leaving.push_back(bit);
-      } else if (pays) {
+      } else if (const double due = wait(missing, along); pays && due <= end) {
         entries.push_back({bit, -1});
-        put(static_cast<int>(entries.size()) - 1, tick_of(wait(missing, along)));
+        put(static_cast<int>(entries.size()) - 1, tick_of(due));
       }
     });
   }
@@ -116,5 +116,5 @@ double LiftOffWindow::wait(double missing, double u) const
 
 int LiftOffWindow::tick_of(double time) const
 {
-  return std::clamp(static_cast<int>(time / end * TICKS), 0, TICKS - 1);
+  return static_cast<int>(std::clamp(time / end * TICKS, 0.0, TICKS - 1.0));
 }

@@ -22,7 +22,8 @@ struct Motion {
   Motion along(const Quaternion &axes) const
   {
     Motion m = *this;
-    if (!axes.is_none()) axes.to_body(acceleration, m.acceleration);
+    if (axes.is_none()) return m;
+    axes.to_body(acceleration, m.acceleration);
     if (!turns()) return m;
     axes.to_body(angular_acceleration, m.angular_acceleration);
     axes.to_body(spin, m.spin);

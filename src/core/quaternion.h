@@ -39,7 +39,7 @@ struct Quaternion {
 
   /*! The same along the body's own axes */
   Quaternion operator*(const Quaternion &first) const;
-  bool is_none() const { return q[0] == 1.0; }
+  bool is_none() const { return q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0; }
   Quaternion inverse() const { return {{q[0], -q[1], -q[2], -q[3]}}; }
 
  private:

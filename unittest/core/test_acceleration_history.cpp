@@ -45,7 +45,7 @@ TEST(AccelerationHistory, AnswersAsALookAtEachMotionDoes)
         double n[3] = {normal(random), normal(random), normal(random)};
         const double size = std::sqrt(dot(n, n));
         for (double &x : n) x /= size;
-        double push = 0.0, lift = -INFINITY, force = 0.0;
+        double push = -INFINITY, lift = -INFINITY, force = 0.0;
         for (const Motion &m : motions) {
           double g[3];
           m.inertia(n, SHELL, g);

@@ -158,3 +158,17 @@ def test_restart_before_detached_grains_are_emitted(emitted, tmp_path):
     state, last = emit(tmp_path, 4, start="restart")
     assert last == emitted[1]
     assert [line.split()[:2] for line in state.splitlines()] == [line.split()[:2] for line in emitted[0].splitlines()]
+
+
+def test_a_long_collision_crosses_two_borders_at_once(tmp_path):
+    """From the first rank to the last of 2 x 2 in one exchange: the rank between must have room to hand it on."""
+    found = []
+    for px, py in (1, 1), (2, 2):
+        command = ["mpirun", "--oversubscribe", "-np", str(px * py), str(BUILD / "bin/lmp-dust"), "-log", "none",
+                   "-in", str(DECK.with_name("in.corner")), "-var", "px", str(px), "-var", "py", str(py)]
+        done = subprocess.run(command, cwd=tmp_path, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+        thermo = re.search(r"^ *Step .*?(?=^Loop time)", done.stdout, re.M | re.S)
+        found.append(thermo[0])
+    assert found[1] == found[0]
+    assert float(found[0].split()[-6]) > 0.5    # dispersion ratio
