@@ -4,10 +4,10 @@ memory per carrier, and two ranks against one.
     . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts drum,ranks,scaling] [--out FILE]
 
 Segments with and without the fix follow each other in one run, which does not depend on the fix; the fastest of each, the least
-disturbed ones, are compared, in processor time. A segment with the fix starts when the fix has been there for 60 steps. Drum: in.drum,
+disturbed ones, are compared. A segment with the fix starts when the fix has been there for 60 steps. Drum: in.drum,
 filled, settled and turned for a while. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a direction,
 no losses, contacts softened 1000 times), in which every carrier is in the same state whatever their number. Memory: by how much
-the largest resident size of the process grows with the fix. Ranks: processor time of a rank, in the gas.
+the largest resident size of the process grows with the fix. Ranks: the gas.
 Other work on the machine disturbs all this.
 """
 
@@ -54,7 +54,7 @@ SIZES = {1_000: (10, 10, 10), 10_000: (20, 25, 20), 100_000: (50, 50, 40), 1_000
 
 
 def run(deck: str, processes: int = 1) -> tuple[list[float], list[float]]:
-    """Processor times of loops in seconds per rank, and what `info memory` said of the largest resident size, in bytes."""
+    """Times of loops in seconds, and what `info memory` said of the largest resident size, in bytes."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "in.deck").write_text(deck)
         command = [str(LMP), "-in", "in.deck", "-log", "none"]
@@ -64,9 +64,7 @@ def run(deck: str, processes: int = 1) -> tuple[list[float], list[float]]:
         done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment, check=False)
     if done.returncode:
         sys.exit(f"{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
-    # processor time: what else runs on the machine hits wall time far more
-    found = re.findall(r"^Loop time of (\S+).*?^ *(\S+)% CPU use", done.stdout, re.MULTILINE | re.DOTALL)
-    times = [float(loop) * float(use) / 100 for loop, use in found]
+    times = [float(loop) for loop in re.findall(r"^Loop time of (\S+)", done.stdout, re.MULTILINE)]
     return times, [
         2.0**20 * float(size)
         for size in re.findall(r"^Maximum resident set size: (\S+) Mbyte", done.stdout, re.MULTILINE)
