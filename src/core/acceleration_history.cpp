@@ -70,18 +70,16 @@ AccelerationHistory::Sphere AccelerationHistory::around(size_t level, size_t fir
       s.centre.spin[d] += m.spin[d] / BRANCH;
     }
   }
-  const auto length = [](const double *a, const double *b, double sign) {
-    const double r[3] = {a[0] + sign * b[0], a[1] + sign * b[1], a[2] + sign * b[2]};
+  const auto distance = [](const double *a, const double *b) {
+    const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
     return std::sqrt(dot(r, r));
   };
   for (size_t i = 0; i < BRANCH; i++) {
     const Sphere part = member(level, first + i);
     const Motion &m = part.centre, &c = s.centre;
-    // omega x (omega x n) differs by at most |difference of omega| |sum of omega|
-    const double turning = length(m.angular_acceleration, c.angular_acceleration, -1.0) +
-        length(m.spin, c.spin, -1.0) * length(m.spin, c.spin, 1.0);
+    const double turning = distance(m.angular_acceleration, c.angular_acceleration) + spin_difference(m.spin, c.spin);
     constexpr double ROUND_OFF = 1.0 + 1.0e-12;
-    s.radius = std::max(s.radius, (length(m.acceleration, c.acceleration, -1.0) + part.radius) * ROUND_OFF);
+    s.radius = std::max(s.radius, (distance(m.acceleration, c.acceleration) + part.radius) * ROUND_OFF);
     s.turning = std::max(s.turning, (turning + part.turning) * ROUND_OFF);
   }
   return s;

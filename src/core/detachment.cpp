@@ -261,9 +261,7 @@ bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double
 
   // what has held at the peak holds at a part of it, with that part of the room up to c for what comes aside and by spin
   const auto holds = [&]() {
-    const double *v = history.peak().spin, change[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]};
-    const double sum[3] = {w[0] + v[0], w[1] + v[1], w[2] + v[2]};
-    const double more = std::sqrt(part.aside2) + df.reach * std::sqrt(dot(change, change) * dot(sum, sum));
+    const double *v = history.peak().spin, more = std::sqrt(part.aside2) + df.reach * spin_difference(w, v);
     return (1.0 - part.lambda) * (df.least - df.reach * dot(v, v)) >= more;
   };
   const size_t before = work.detached.size();

@@ -15,19 +15,17 @@ using namespace Dust;
 
 namespace {
 
-// of each other's change of g: along an axis, and the most that can come aside of it, with that of the spin
+// of g: along an axis, and the most that can come aside of it and by the spin
 struct Change {
   double along, aside;
 };
 
 Change change(const Motion &from, const Motion &to, const double *axis, double reach)
 {
-  const double *a = to.acceleration, *b = from.acceleration, *w = to.spin, *v = from.spin;
+  const double *a = to.acceleration, *b = from.acceleration;
   const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]}, along = dot(d, axis);
   const double e[3] = {d[0] - along * axis[0], d[1] - along * axis[1], d[2] - along * axis[2]};
-  // omega^2 - (omega.n)^2 changes by at most |change of omega| |sum of both|
-  const double turn[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]}, sum[3] = {w[0] + v[0], w[1] + v[1], w[2] + v[2]};
-  return {std::fabs(along), std::sqrt(dot(e, e)) + reach * std::sqrt(dot(turn, turn) * dot(sum, sum))};
+  return {std::fabs(along), std::sqrt(dot(e, e)) + reach * spin_difference(to.spin, from.spin)};
 }
 
 }    // namespace

@@ -12,6 +12,14 @@
 
 namespace Dust {
 
+/*! Largest difference of what two spins add to g on a grain, per |r|: omega x (omega x n) differs by at most
+ *  |difference of omega| |sum of omega| */
+inline double spin_difference(const double *w, const double *v)
+{
+  const double difference[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]}, sum[3] = {w[0] + v[0], w[1] + v[1], w[2] + v[2]};
+  return std::sqrt(dot(difference, difference) * dot(sum, sum));
+}
+
 /*! How a carrier's contacts move it at one moment */
 struct Motion {
   double acceleration[3];            //!< a = contact force / mass
