@@ -33,7 +33,7 @@ void CreateDust::command(int narg, char **arg)
   const int igroup = group->find(arg[0]);
   if (igroup < 0) error->all(FLERR, "Create_dust group {} does not exist", arg[0]);
   if (strcmp(arg[1], "type") != 0) error->all(FLERR, "Create_dust wants the word type after the group, not {}", arg[1]);
-  const int type = utils::inumeric(FLERR, arg[2], false, lmp);
+  const int type = utils::is_integer(arg[2]) ? utils::inumeric(FLERR, arg[2], false, lmp) : 0;
   if (type < 1 || type > atom->ntypes) error->all(FLERR, "Create_dust type {} must be from 1 to {}", arg[2], atom->ntypes);
   if (domain->triclinic) error->all(FLERR, "Create_dust needs an orthogonal box");
   if (!atom->tag_enable || !atom->omega_flag) error->all(FLERR, "Create_dust needs atoms with IDs and spin");

@@ -49,7 +49,14 @@ void DustOptions::need(int iarg, int n, int narg, char **arg) const
 
 double DustOptions::number(int iarg, int k, char **arg) const
 {
+  check(iarg, k, arg, utils::is_double(arg[iarg + k]), "a number");
   return utils::numeric(FLERR, arg[iarg + k], false, lmp);
+}
+
+int DustOptions::whole_number(int iarg, int k, char **arg) const
+{
+  check(iarg, k, arg, utils::is_integer(arg[iarg + k]), "a whole number");
+  return utils::inumeric(FLERR, arg[iarg + k], false, lmp);
 }
 
 void DustOptions::check(int iarg, int k, char **arg, bool ok, const char *range) const
@@ -120,7 +127,7 @@ int DustOptions::parse(int iarg, int narg, char **arg)
     orientation_seed = 0;
     if (value == "same") return iarg + 2;
     need(iarg, 2, narg, arg);
-    orientation_seed = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
+    orientation_seed = whole_number(iarg, 2, arg);
     if (orientation_seed <= 0) error->all(FLERR, "{} orientation random seed {} must be above 0", command, arg[iarg + 2]);
     return iarg + 3;
   }
@@ -167,7 +174,7 @@ int DustOptions::parse_texture(int iarg, int narg, char **arg)
       if (!(coverage > 0.0 && std::isfinite(coverage)))
         error->all(FLERR, "{} coverage {} must be above 0", command, arg[iarg + 1]);
     } else {
-      seed = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      seed = whole_number(iarg, 1, arg);
       if (seed <= 0) error->all(FLERR, "{} seed {} must be above 0", command, arg[iarg + 1]);
     }
   }

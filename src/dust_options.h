@@ -28,6 +28,7 @@ class DustOptions : protected Pointers {
   // helpers for the keywords of a command itself: errors name the command, the keyword and the value
   void need(int iarg, int n, int narg, char **arg) const;
   double number(int iarg, int k, char **arg) const;
+  int whole_number(int iarg, int k, char **arg) const;
   double positive(int iarg, int k, char **arg) const;
   void check(int iarg, int k, char **arg, bool ok, const char *range) const;
 

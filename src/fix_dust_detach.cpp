@@ -120,6 +120,11 @@ void FixDustDetach::parse(int narg, char **arg)
                  "elastic, write or orientation", key, utils::join_words(KEYWORDS, ", "));
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
+    const auto yes = [&]() {
+      const bool on = value == "yes" || value == "on" || value == "true";
+      options.check(iarg, 1, arg, on || value == "no" || value == "off" || value == "false", "yes or no");
+      return on;
+    };
     if (key == "friction") {
       friction = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, friction >= 0.0 && std::isfinite(friction), "at least 0");
@@ -140,14 +145,14 @@ void FixDustDetach::parse(int narg, char **arg)
       options.check(iarg, 1, arg, value == "liftoff" || value == "ibrahim", "liftoff or ibrahim");
       criteria.ibrahim = value == "ibrahim";
     } else if (key == "every") {
-      every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      every = options.whole_number(iarg, 1, arg);
       options.check(iarg, 1, arg, every > 0, "at least 1");
     } else if (key == "counts") {
-      criteria.count = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      criteria.count = yes();
     } else if (key == "rows") {
-      keep_rows = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      keep_rows = yes();
     } else if (key == "rotation") {
-      rotation = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      rotation = yes();
     } else if (key == "stiffen") {
       const double factor = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, factor >= 1.0 && std::isfinite(factor), "at least 1");
@@ -155,13 +160,13 @@ void FixDustDetach::parse(int narg, char **arg)
       stiffen_acceleration = std::pow(factor, 0.4);
       stiffen_time = 1.0 / stiffen_acceleration;
     } else if (key == "mass") {
-      lose_mass = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      lose_mass = yes();
       mass_given = true;
     } else if (value == "none") {
       emit = 0;
     } else {
       options.check(iarg, 1, arg, utils::is_integer(value), "none or an atom type");
-      emit = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      emit = options.whole_number(iarg, 1, arg);
       options.check(iarg, 1, arg, emit >= 1 && emit <= atom->ntypes, fmt::format("none or from 1 to {}", atom->ntypes).c_str());
     }
     iarg += 2;
