@@ -610,12 +610,12 @@ int Collision::lost_north(const DetachmentFunctions &df, const uint64_t *attache
 }
 
 /* ----------------------------------------------------------------------
-   sizes; course and record, then what a strong one has. The window is opened anew, which changes no result.
+   sizes, course and record; then the same of what a strong one has. The window is opened anew, which changes no result.
 ------------------------------------------------------------------------- */
 
 namespace {
 
-constexpr int PACKED_SIZES = 6;
+constexpr int SIZES = 2, STRONG_SIZES = 4;
 template <typename T> constexpr size_t numbers_of()
 {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0, "travels as doubles");
@@ -638,19 +638,16 @@ template <typename T> const double *get(const double *buf, T *data, size_t count
 
 int Collision::packed_size() const
 {
-  size_t size = PACKED_SIZES + numbers_of<Course>() + (record ? record->packed_size() : 0);
+  size_t size = SIZES + numbers_of<Course>() + (record ? record->packed_size() : 0);
   if (strong)
-    size += numbers_of<Strong::State>() + strong->start.size() + strong->history.kept().size() * numbers_of<Motion>();
+    size += STRONG_SIZES + numbers_of<Strong::State>() + strong->start.size() +
+        strong->history.kept().size() * numbers_of<Motion>();
   return static_cast<int>(size);
 }
 
 void Collision::pack(double *buf) const
 {
   *buf++ = strong != nullptr;
-  *buf++ = strong ? double(strong->start.size()) : 0.0;
-  *buf++ = strong ? double(strong->history.kept().size()) : 0.0;
-  *buf++ = strong ? double(strong->history.peak_index()) : 0.0;
-  *buf++ = strong ? strong->history.peak2() : 0.0;
   *buf++ = record ? record->packed_size() : 0.0;
   buf = put(buf, &course, 1);
   if (record) {
@@ -658,18 +655,19 @@ void Collision::pack(double *buf) const
     buf += record->packed_size();
   }
   if (!strong) return;
+  const std::vector<Motion> &motions = strong->history.kept();
+  *buf++ = double(strong->start.size());
+  *buf++ = double(motions.size());
+  *buf++ = double(strong->history.peak_index());
+  *buf++ = strong->history.peak2();
   buf = put(buf, &strong->state, 1);
   buf = put(buf, strong->start.data(), strong->start.size());
-  put(buf, strong->history.kept().data(), strong->history.kept().size());
+  put(buf, motions.data(), motions.size());
 }
 
 void Collision::unpack(const double *buf)
 {
   const bool was_strong = *buf++ != 0.0;
-  std::vector<uint64_t> start(static_cast<size_t>(*buf++));
-  std::vector<Motion> motions(static_cast<size_t>(*buf++));
-  const auto peak_index = static_cast<size_t>(*buf++);
-  const double peak2 = *buf++;
   const int recorded = static_cast<int>(*buf++);
   buf = get(buf, &course, 1);
   record.reset();
@@ -681,9 +679,12 @@ void Collision::unpack(const double *buf)
   strong.reset();
   if (!was_strong) return;
   strong = std::make_unique<Strong>();
+  strong->start.resize(static_cast<size_t>(*buf++));
+  std::vector<Motion> motions(static_cast<size_t>(*buf++));
+  const auto peak_index = static_cast<size_t>(*buf++);
+  const double peak2 = *buf++;
   buf = get(buf, &strong->state, 1);
-  buf = get(buf, start.data(), start.size());
+  buf = get(buf, strong->start.data(), strong->start.size());
   get(buf, motions.data(), motions.size());
-  strong->start = std::move(start);
   strong->history.assign(motions.data(), motions.size(), peak_index, peak2);
 }

@@ -8,21 +8,32 @@ from pathlib import Path
 import pytest
 
 BUILD = Path(os.environ.get("DUST_BUILD_DIR", Path(__file__).parents[2] / "build"))
-DECK = Path(__file__).with_name("in.ranks")
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
-def run(folder: Path, ranks: int, **variables: str) -> tuple[str, str, list[str]]:
-    """Final state of the carriers, thermo output and events (sorted) of the deck on so many ranks."""
-    command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-in", str(DECK), "-log", "none"]
+def mpirun(folder: Path, deck: str, ranks: int, **variables: str) -> str:
+    """What lmp-dust prints of a deck beside this file, on so many ranks."""
+    command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-log", "none"]
+    command += ["-in", str(Path(__file__).with_name(deck))]
     for name, value in variables.items():
         command += ["-var", name, value]
     done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    thermo = re.search(r"^ *Step .*?(?=^Loop time)", done.stdout, re.M | re.S)
-    assert thermo, done.stdout
+    return done.stdout
+
+
+def thermo(said: str) -> str:
+    """The table of a deck's run."""
+    table = re.search(r"^ *Step .*?(?=^Loop time)", said, re.M | re.S)
+    assert table, said
+    return table[0]
+
+
+def run(folder: Path, ranks: int, **variables: str) -> tuple[str, str, list[str]]:
+    """Final state of the carriers, thermo output and events (sorted) of the deck on so many ranks."""
+    said = mpirun(folder, "in.ranks", ranks, **variables)
     events = (folder / "ranks.txt.events").read_text().splitlines()
-    return (folder / "ranks.txt").read_text(), thermo[0], sorted(line for line in events if re.match(r"\d+ \d+ \d+ \d", line))
+    return (folder / "ranks.txt").read_text(), thermo(said), sorted(line for line in events if re.match(r"\d+ \d+ \d+ \d", line))
 
 
 @pytest.fixture(scope="module")
@@ -82,10 +93,7 @@ def test_real_grains_stay_tied_on_any_number_of_ranks(tmp_path, newton):
     """Chains of necks cross ranks; the sums of forces on the carrier run in another order, which is round-off."""
     tied = []
     for ranks in (1, 2, 4):
-        command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-log", "none",
-                   "-in", str(DECK.with_name("in.dust")), "-var", "newton", newton]
-        done = subprocess.run(command, cwd=tmp_path, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
-        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+        mpirun(tmp_path, "in.dust", ranks, newton=newton)
         tied.append((tmp_path / "dust.txt").read_text())
     assert 0 < sum(line.endswith(" 1 ") or line.endswith(" 1") for line in tied[0].splitlines()[9:]) < 450
     assert tied[1] == tied[0]
@@ -94,11 +102,7 @@ def test_real_grains_stay_tied_on_any_number_of_ranks(tmp_path, newton):
 
 def swap(folder: Path, ranks: int = 1, **variables: str) -> list[list[float]]:
     """Rows of id x y z vx vy vz omega after in.swap."""
-    command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-in", str(DECK.with_name("in.swap")), "-log", "none"]
-    for name, value in variables.items():
-        command += ["-var", name, value]
-    done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    mpirun(folder, "in.swap", ranks, **variables)
     return [[float(word) for word in line.split()] for line in (folder / "swap.txt").read_text().splitlines()[9:]]
 
 
@@ -131,12 +135,7 @@ def test_restart_keeps_necks_and_displacements(tmp_path, ranks):
 
 def emit(folder: Path, ranks: int, **variables: str) -> tuple[str, list[str]]:
     """Final state of carriers and grains, and what the deck says at the end of the run."""
-    command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-log", "none", "-in", str(DECK.with_name("in.emit"))]
-    for name, value in variables.items():
-        command += ["-var", name, value]
-    done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    last = re.findall(r"^ +9000 .*|^mass .*", done.stdout, re.M)
+    last = re.findall(r"^ +9000 .*|^mass .*", mpirun(folder, "in.emit", ranks, **variables), re.M)
     return (folder / "emit.txt").read_text(), last
 
 
@@ -164,11 +163,6 @@ def test_a_long_collision_crosses_two_borders_at_once(tmp_path):
     """From the first rank to the last of 2 x 2 in one exchange: the rank between must have room to hand it on."""
     found = []
     for px, py in (1, 1), (2, 2):
-        command = ["mpirun", "--oversubscribe", "-np", str(px * py), str(BUILD / "bin/lmp-dust"), "-log", "none",
-                   "-in", str(DECK.with_name("in.corner")), "-var", "px", str(px), "-var", "py", str(py)]
-        done = subprocess.run(command, cwd=tmp_path, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
-        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-        thermo = re.search(r"^ *Step .*?(?=^Loop time)", done.stdout, re.M | re.S)
-        found.append(thermo[0])
+        found.append(thermo(mpirun(tmp_path, "in.corner", px * py, px=str(px), py=str(py))))
     assert found[1] == found[0]
     assert float(found[0].split()[-6]) > 0.5    # dispersion ratio
