@@ -56,7 +56,9 @@ ComputeDustCarrier::~ComputeDustCarrier()
 void ComputeDustCarrier::init()
 {
   pair = dynamic_cast<PairGranular *>(force->pair);
-  if (!pair) error->all(FLERR, "Compute dust/carrier needs pair_style granular, not {}", force->pair_style ? force->pair_style : "none");
+  if (!pair)
+    error->all(FLERR, "Compute dust/carrier needs pair_style granular, not {}",
+               force->pair_style ? force->pair_style : "none");
   history = nullptr;
   adhesive.resize(pair->nmodels);
   for (int m = 0; m < pair->nmodels; m++)
@@ -85,7 +87,8 @@ void ComputeDustCarrier::compute_peratom()
     memory->create(vector_atom, nmax, "dust/carrier:vector_atom");
   }
   const int *mask = atom->mask, *type = atom->type;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++) vector_atom[i] = (mask[i] & carrier_bit) ? double(atom->tag[i]) : 0.0;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    vector_atom[i] = (mask[i] & carrier_bit) ? double(atom->tag[i]) : 0.0;
 
   const NeighList *list = pair->list;
   const int size = pair->get_size_history();
@@ -101,8 +104,14 @@ void ComputeDustCarrier::compute_peratom()
         if (!normal || normal->neck_in(history->firstvalue[i] + size * jj) == 0.0) continue;
         double &a = vector_atom[i], &b = vector_atom[j];
         // a carrier keeps its own ID
-        if (b > a && !(mask[i] & carrier_bit)) { a = b; changed = 1; }
-        if (a > b && !(mask[j] & carrier_bit)) { b = a; changed = 1; }
+        if (b > a && !(mask[i] & carrier_bit)) {
+          a = b;
+          changed = 1;
+        }
+        if (a > b && !(mask[j] & carrier_bit)) {
+          b = a;
+          changed = 1;
+        }
       }
     }
     // what a ghost has learnt goes to its owner, what the owner knows to all ghosts
@@ -184,7 +193,4 @@ void ComputeDustCarrier::unpack_reverse_comm(int n, int *list, double *buf)
 
 /* ---------------------------------------------------------------------- */
 
-double ComputeDustCarrier::memory_usage()
-{
-  return double(nmax) * sizeof(double);
-}
+double ComputeDustCarrier::memory_usage() { return double(nmax) * sizeof(double); }

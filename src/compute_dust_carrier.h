@@ -18,7 +18,7 @@ ComputeStyle(dust/carrier,ComputeDustCarrier);
 namespace LAMMPS_NS {
 
 namespace Granular_NS {
-  class GranSubModNormalJKRVdW;
+class GranSubModNormalJKRVdW;
 }
 
 // per grain: ID of the carrier it is tied to by a chain of necks, 0 = detached; when contacts last changed
@@ -42,7 +42,8 @@ class ComputeDustCarrier : public Compute {
   int nmax;
   class PairGranular *pair;
   class FixNeighHistory *history;
-  std::vector<const Granular_NS::GranSubModNormalJKRVdW *> adhesive;    // by model of the pair style, nullptr = knows no necks
+  std::vector<const Granular_NS::GranSubModNormalJKRVdW *>
+      adhesive;    // by model of the pair style, nullptr = knows no necks
 };
 
 }    // namespace LAMMPS_NS

@@ -34,7 +34,8 @@ void CreateDust::command(int narg, char **arg)
   if (igroup < 0) error->all(FLERR, "Create_dust group {} does not exist", arg[0]);
   if (strcmp(arg[1], "type") != 0) error->all(FLERR, "Create_dust wants the word type after the group, not {}", arg[1]);
   const int type = utils::is_integer(arg[2]) ? utils::inumeric(FLERR, arg[2], false, lmp) : 0;
-  if (type < 1 || type > atom->ntypes) error->all(FLERR, "Create_dust type {} must be from 1 to {}", arg[2], atom->ntypes);
+  if (type < 1 || type > atom->ntypes)
+    error->all(FLERR, "Create_dust type {} must be from 1 to {}", arg[2], atom->ntypes);
   if (domain->triclinic) error->all(FLERR, "Create_dust needs an orthogonal box");
   if (!atom->tag_enable || !atom->omega_flag) error->all(FLERR, "Create_dust needs atoms with IDs and spin");
 
@@ -42,8 +43,11 @@ void CreateDust::command(int narg, char **arg)
   for (int iarg = 3; iarg < narg;) {
     const int next = options.parse(iarg, narg, arg);
     if (next == iarg)
-      error->all(FLERR, "Unknown create_dust keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, orientation or "
-                 "write", arg[iarg]);
+      error->all(FLERR,
+                 "Unknown create_dust keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
+                 "orientation or "
+                 "write",
+                 arg[iarg]);
     iarg = next;
   }
   options.complete();
@@ -73,15 +77,17 @@ void CreateDust::command(int narg, char **arg)
       MathExtra::add3(carrier.x, arm, x);
       MathExtra::cross3(carrier.omega, arm, v);
       MathExtra::add3(carrier.v, v, v);
-      atoms.create(type, tag, x, grain.radius, 4.0 / 3.0 * MathConst::MY_PI * MathSpecial::cube(grain.radius) * options.density, v,
-                   carrier.omega);
+      atoms.create(type, tag, x, grain.radius,
+                   4.0 / 3.0 * MathConst::MY_PI * MathSpecial::cube(grain.radius) * options.density, v, carrier.omega);
     }
   }
   const bigint made = atoms.finish();
   const auto wanted = static_cast<bigint>(grains * carriers.size());
   if (made != wanted)
-    error->all(FLERR, "Create_dust: {} of {} grains lie outside the box: a carrier is closer to a border than a grain's "
-               "diameter", wanted - made, wanted);
+    error->all(FLERR,
+               "Create_dust: {} of {} grains lie outside the box: a carrier is closer to a border than a grain's "
+               "diameter",
+               wanted - made, wanted);
   if (comm->me == 0) utils::logmesg(lmp, "Created {} grains on {} carriers\n", made, carriers.size());
 }
 

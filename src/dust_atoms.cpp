@@ -44,7 +44,8 @@ tagint DustAtoms::highest_tag(LAMMPS *lmp)
 
 /* ---------------------------------------------------------------------- */
 
-void DustAtoms::create(int type, tagint tag, const double *place, double radius, double mass, const double *v, const double *omega)
+void DustAtoms::create(int type, tagint tag, const double *place, double radius, double mass, const double *v,
+                       const double *omega)
 {
   double x[3] = {place[0], place[1], place[2]};
   imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;

@@ -18,7 +18,8 @@ constexpr int ALL_RANKS = -1;
 // the records of all ranks, in the order of ranks, on one rank or on all; records are made of doubles
 template <typename Record> std::vector<Record> dust_gather(const std::vector<Record> &mine, int root, MPI_Comm world)
 {
-  static_assert(std::is_trivially_copyable_v<Record> && sizeof(Record) % sizeof(double) == 0, "records are made of doubles");
+  static_assert(std::is_trivially_copyable_v<Record> && sizeof(Record) % sizeof(double) == 0,
+                "records are made of doubles");
   constexpr int SIZE = sizeof(Record) / sizeof(double);
   int me, nprocs;
   MPI_Comm_rank(world, &me);

@@ -36,8 +36,10 @@ DustOptions::DustOptions(LAMMPS *lmp, const std::string &command) :
   if (domain->dimension != 3) error->all(FLERR, "{} needs dimension 3", command);
   // elsewhere LAMMPS' own granular models do not convert, nor does set density
   if (force->ftm2v != 1.0 || force->mvv2e != 1.0 || force->nktv2p != 1.0 || force->mv2d != 1.0)
-    error->all(FLERR, "{} works with units si, cgs, lj, micro or nano, not with units {}, in which force is not mass times "
-               "acceleration", command, update->unit_style);
+    error->all(FLERR,
+               "{} works with units si, cgs, lj, micro or nano, not with units {}, in which force is not mass times "
+               "acceleration",
+               command, update->unit_style);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -128,7 +130,8 @@ int DustOptions::parse(int iarg, int narg, char **arg)
     if (value == "same") return iarg + 2;
     need(iarg, 2, narg, arg);
     orientation_seed = whole_number(iarg, 2, arg);
-    if (orientation_seed <= 0) error->all(FLERR, "{} orientation random seed {} must be above 0", command, arg[iarg + 2]);
+    if (orientation_seed <= 0)
+      error->all(FLERR, "{} orientation random seed {} must be above 0", command, arg[iarg + 2]);
     return iarg + 3;
   }
   if (key == "distribution") {
@@ -141,7 +144,8 @@ int DustOptions::parse(int iarg, int narg, char **arg)
     sizes.x50 = positive(iarg, 2, arg);
     sizes.spread = number(iarg, 3, arg);
     const bool lognormal = kind == "lognormal";
-    check(iarg, 3, arg, sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread), lognormal ? "above 1" : "above 0");
+    check(iarg, 3, arg, sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread),
+          lognormal ? "above 1" : "above 0");
     distributed = true;
     return iarg + 4;
   }
@@ -251,17 +255,11 @@ Dust::Quaternion DustOptions::orientation(tagint tag) const
 
 /* ---------------------------------------------------------------------- */
 
-double DustOptions::modulus() const
-{
-  return Dust::combined_modulus(elastic[0], elastic[1], elastic[2], elastic[3]);
-}
+double DustOptions::modulus() const { return Dust::combined_modulus(elastic[0], elastic[1], elastic[2], elastic[3]); }
 
 /* ---------------------------------------------------------------------- */
 
-bool DustOptions::same_size(double radius, double other)
-{
-  return std::fabs(radius - other) <= 1.0e-6 * other;
-}
+bool DustOptions::same_size(double radius, double other) { return std::fabs(radius - other) <= 1.0e-6 * other; }
 
 /* ---------------------------------------------------------------------- */
 
@@ -271,7 +269,8 @@ double DustOptions::carrier_radius(int igroup) const
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & group->bitmask[igroup])) continue;
     const double radius = atom->radius[i];
-    if (!(radius > 0.0)) error->one(FLERR, "{} carrier {} has radius {}: it must be above 0", command, atom->tag[i], radius);
+    if (!(radius > 0.0))
+      error->one(FLERR, "{} carrier {} has radius {}: it must be above 0", command, atom->tag[i], radius);
     extremes[0] = std::max(extremes[0], radius);
     extremes[1] = std::max(extremes[1], 1.0 / radius);
   }
@@ -279,8 +278,10 @@ double DustOptions::carrier_radius(int igroup) const
   if (extremes[0] == 0.0) return 0.0;
   const double largest = extremes[0], least = 1.0 / extremes[1];
   if (!same_size(least, largest))
-    error->all(FLERR, "{} group {} has carriers of diameter {} to {}: one texture serves one size, use a group and a command "
-               "for each", command, group->names[igroup], 2.0 * least, 2.0 * largest);
+    error->all(FLERR,
+               "{} group {} has carriers of diameter {} to {}: one texture serves one size, use a group and a command "
+               "for each",
+               command, group->names[igroup], 2.0 * least, 2.0 * largest);
   return largest;
 }
 
@@ -290,15 +291,18 @@ Dust::Texture DustOptions::texture(double radius) const
 {
   Dust::Texture made;
   try {
-    if (!file.empty()) made = from_file;
-    else if (distributed) made = Dust::place_monolayer(radius, sizes, coverage, bare, seed);
-    else made = Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
+    if (!file.empty())
+      made = from_file;
+    else if (distributed)
+      made = Dust::place_monolayer(radius, sizes, coverage, bare, seed);
+    else
+      made = Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
   } catch (Dust::TextureError &e) {
     error->all(FLERR, "{} texture: {}", command, e.what());
   }
   if (!same_size(made.carrier_radius, radius))
-    error->all(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, file, 2.0 * made.carrier_radius,
-               2.0 * radius);
+    error->all(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, file,
+               2.0 * made.carrier_radius, 2.0 * radius);
   if (!write.empty()) {
     int written = 1;
     if (comm->me == 0) {

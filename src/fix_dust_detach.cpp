@@ -31,8 +31,8 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 // its own ones, beside those of DustOptions
-static const std::vector<std::string> KEYWORDS = {"friction", "rolling", "damping", "tangential", "criteria", "counts", "every",
-                                                  "rows", "rotation", "stiffen", "mass", "emit"};
+static const std::vector<std::string> KEYWORDS = {"friction", "rolling", "damping",  "tangential", "criteria", "counts",
+                                                  "every",    "rows",    "rotation", "stiffen",    "mass",     "emit"};
 
 static double distance2(const double *a, const double *b)
 {
@@ -116,8 +116,11 @@ void FixDustDetach::parse(int narg, char **arg)
     }
     const std::string key = arg[iarg];
     if (std::find(KEYWORDS.begin(), KEYWORDS.end(), key) == KEYWORDS.end())
-      error->all(FLERR, "Unknown fix dust/detach keyword {}: use {}, or texture, bare, distribution, density, hamaker, surface, "
-                 "elastic, write or orientation", key, utils::join_words(KEYWORDS, ", "));
+      error->all(
+          FLERR,
+          "Unknown fix dust/detach keyword {}: use {}, or texture, bare, distribution, density, hamaker, surface, "
+          "elastic, write or orientation",
+          key, utils::join_words(KEYWORDS, ", "));
     options.need(iarg, 1, narg, arg);
     const std::string value = arg[iarg + 1];
     const auto yes = [&]() {
@@ -135,12 +138,13 @@ void FixDustDetach::parse(int narg, char **arg)
       rolling = options.number(iarg, 1, arg);
       options.check(iarg, 1, arg, rolling >= 0.0 && std::isfinite(rolling), "at least 0 (rad)");
     } else if (key == "tangential") {
-      options.check(iarg, 1, arg, value == "estimate" || value == "integrate" || value == "frictionless" || value == "off",
+      options.check(iarg, 1, arg,
+                    value == "estimate" || value == "integrate" || value == "frictionless" || value == "off",
                     "estimate, integrate, frictionless or off");
-      criteria.tangential = value == "estimate" ? Dust::Criteria::ESTIMATE
-          : value == "integrate"                ? Dust::Criteria::INTEGRATE
-          : value == "frictionless"             ? Dust::Criteria::FRICTIONLESS
-                                                : Dust::Criteria::OFF;
+      criteria.tangential = value == "estimate"       ? Dust::Criteria::ESTIMATE
+                            : value == "integrate"    ? Dust::Criteria::INTEGRATE
+                            : value == "frictionless" ? Dust::Criteria::FRICTIONLESS
+                                                      : Dust::Criteria::OFF;
     } else if (key == "criteria") {
       options.check(iarg, 1, arg, value == "liftoff" || value == "ibrahim", "liftoff or ibrahim");
       criteria.ibrahim = value == "ibrahim";
@@ -167,7 +171,8 @@ void FixDustDetach::parse(int narg, char **arg)
     } else {
       options.check(iarg, 1, arg, utils::is_integer(value), "none or an atom type");
       emit = options.whole_number(iarg, 1, arg);
-      options.check(iarg, 1, arg, emit >= 1 && emit <= atom->ntypes, fmt::format("none or from 1 to {}", atom->ntypes).c_str());
+      options.check(iarg, 1, arg, emit >= 1 && emit <= atom->ntypes,
+                    fmt::format("none or from 1 to {}", atom->ntypes).c_str());
     }
     iarg += 2;
   }
@@ -178,7 +183,8 @@ void FixDustDetach::parse(int narg, char **arg)
   if (emit && mass_given && !lose_mass)
     error->all(FLERR, "Fix dust/detach emit {} needs mass yes: grains bring the mass that their carriers lose", emit);
   if (emit && igroup == 0)
-    error->all(FLERR, "Fix dust/detach emit {} needs a group of carriers without the emitted grains, not group all", emit);
+    error->all(FLERR, "Fix dust/detach emit {} needs a group of carriers without the emitted grains, not group all",
+               emit);
   if (emit && domain->triclinic) error->all(FLERR, "Fix dust/detach emit {} needs an orthogonal box", emit);
   if (emit) lose_mass = true;
   work.locate = keep_rows || lose_mass;
@@ -191,7 +197,8 @@ void FixDustDetach::parse(int narg, char **arg)
 void FixDustDetach::build()
 {
   texture = options.texture(carrier_radius);
-  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling, damping};
+  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling,
+                                   damping};
   functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, criteria);
 
   // a number that tells this texture from another one in a restart file
@@ -206,18 +213,15 @@ void FixDustDetach::build()
   adopt();
 
   if (comm->me == 0) {
-    utils::logmesg(lmp, "Fix dust/detach {}: {} grains a carrier, mean mass {:.5g}, pull-off acceleration {:.5g} to {:.5g}\n",
-                   id, functions->grains(), functions->mean_mass(), functions->least_hold(),
-                   functions->largest_hold());
+    utils::logmesg(
+        lmp, "Fix dust/detach {}: {} grains a carrier, mean mass {:.5g}, pull-off acceleration {:.5g} to {:.5g}\n", id,
+        functions->grains(), functions->mean_mass(), functions->least_hold(), functions->largest_hold());
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
-int FixDustDetach::setmask()
-{
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE;
-}
+int FixDustDetach::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE; }
 
 /* ---------------------------------------------------------------------- */
 
@@ -232,8 +236,11 @@ void FixDustDetach::init()
   if (functions) {
     const double radius = options.carrier_radius(igroup);
     if (radius > 0.0 && !DustOptions::same_size(radius, carrier_radius))
-      error->all(FLERR, "Fix dust/detach {} has a texture for carriers of diameter {}, but their diameter is now {}: set it before "
-                 "the fix", id, 2.0 * carrier_radius, 2.0 * radius);
+      error->all(
+          FLERR,
+          "Fix dust/detach {} has a texture for carriers of diameter {}, but their diameter is now {}: set it before "
+          "the fix",
+          id, 2.0 * carrier_radius, 2.0 * radius);
     adopt();
   } else if ((carrier_radius = options.carrier_radius(igroup)) > 0.0) {
     build();
@@ -259,11 +266,13 @@ void FixDustDetach::check_order() const
     if (utils::strmatch(other->style, "^dust/detach") || utils::strmatch(other->style, "^store/force")) continue;
     const bool contact = utils::strmatch(other->style, "^wall/gran") || utils::strmatch(other->style, "^surface/");
     if (contact && after)
-      error->all(FLERR, "Fix {} ({}) must stand before fix {} (dust/detach), which needs its contact forces",
-                 other->id, other->style, id);
+      error->all(FLERR, "Fix {} ({}) must stand before fix {} (dust/detach), which needs its contact forces", other->id,
+                 other->style, id);
     if (!contact && !after && (modify->get_fix_mask(other) & POST_FORCE))
-      error->all(FLERR, "Fix {} ({}) must stand after fix {} (dust/detach), which would take its force for a contact "
-                 "force", other->id, other->style, id);
+      error->all(FLERR,
+                 "Fix {} ({}) must stand after fix {} (dust/detach), which would take its force for a contact "
+                 "force",
+                 other->id, other->style, id);
   }
 }
 
@@ -288,10 +297,7 @@ void FixDustDetach::setup(int /*vflag*/)
 
 /* ---------------------------------------------------------------------- */
 
-void FixDustDetach::setup_post_neighbor()
-{
-  post_neighbor();
-}
+void FixDustDetach::setup_post_neighbor() { post_neighbor(); }
 
 /* ----------------------------------------------------------------------
    atoms have come, gone or changed places
@@ -346,10 +352,7 @@ void FixDustDetach::weigh()
    counts of its own, as the user may reset the number of the step
 ------------------------------------------------------------------------- */
 
-void FixDustDetach::initial_integrate(int /*vflag*/)
-{
-  steps += 1.0;
-}
+void FixDustDetach::initial_integrate(int /*vflag*/) { steps += 1.0; }
 
 /* ----------------------------------------------------------------------
    here f holds contact forces only
@@ -489,8 +492,11 @@ void FixDustDetach::finish_collision(int i, int next)
 
   if (!warned && peak <= functions->least_hold() && peak * too_soft > functions->least_hold()) {
     warned = true;
-    error->warning(FLERR, "Fix dust/detach {}: grains of carrier {} stay only because its contacts are softer than the carrier "
-                   "material: see keyword stiffen", id, atom->tag[i]);
+    error
+        ->warning(FLERR,
+                  "Fix dust/detach {}: grains of carrier {} stay only because its contacts are softer than the carrier "
+                  "material: see keyword stiffen",
+                  id, atom->tag[i]);
   }
 }
 
@@ -568,12 +574,13 @@ void FixDustDetach::record(int i)
     const double place[3] = {x[0] + distance * n[0], x[1] + distance * n[1], x[2] + distance * n[2]};
     const double speed[3] = {velocity[0] + w[0], velocity[1] + w[1], velocity[2] + w[2]};
     if (keep_rows)
-      events.push_back({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius, place[0],
-                        place[1], place[2], speed[0], speed[1], speed[2]});
+      events.push_back({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
+                        place[0], place[1], place[2], speed[0], speed[1], speed[2]});
     if (lose_mass) {
       const double *spin = atom->omega[i];
-      losses.push_back({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(), grain.radius,
-                        steps, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1], spin[2]});
+      losses.push_back({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(),
+                        grain.radius, steps, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0],
+                        spin[1], spin[2]});
     }
   }
   mine.weight += lost;
@@ -657,7 +664,8 @@ double FixDustDetach::compute_vector(int n)
     case 2: return t.modes[Dust::NORMAL];
     case 3: return t.modes[Dust::TANGENTIAL];
     case 4: return std::accumulate(t.modes, t.modes + Dust::NMODES, 0.0) - compute_vector(5);
-    case 5: return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
+    case 5:
+      return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
                return c.lost_north(*functions, attached[i]);    // with the velocity so far
              });
     case 6: return t.weight * grain_mass;
@@ -678,7 +686,8 @@ double FixDustDetach::memory_usage()
   const double words = functions ? functions->words() : 0;
   const double numbers = words + NCOLUMNS + 2 + orientation_size();
   double bytes = double(atom->nmax) * (sizeof(int) + numbers * sizeof(double));
-  for (const Dust::Collision &collision : collisions) bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
+  for (const Dust::Collision &collision : collisions)
+    bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
   return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]) + losses.capacity() * sizeof(Loss);
 }
 
@@ -766,7 +775,8 @@ std::vector<FixDustDetach::Loss> FixDustDetach::all_losses() const
    grains of this rank's carriers that would overlap no other atom and lie in the box; walls are not known here
 ------------------------------------------------------------------------- */
 
-void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<int> &carrier, std::vector<char> &leaves) const
+void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<int> &carrier,
+                              std::vector<char> &leaves) const
 {
   // atoms along x, and those that some grain of a carrier could touch
   std::vector<int> along(atom->nlocal + atom->nghost), near;
@@ -774,7 +784,8 @@ void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<in
   std::sort(along.begin(), along.end(), [this](int a, int b) { return atom->x[a][0] < atom->x[b][0]; });
   const double largest = along.empty() ? 0.0 : *std::max_element(atom->radius, atom->radius + along.size());
   for (size_t first = 0, last; first < all.size(); first = last) {
-    for (last = first + 1; last < all.size() && carrier[last] == carrier[first]; last++) {}
+    for (last = first + 1; last < all.size() && carrier[last] == carrier[first]; last++) {
+    }
     const int i = carrier[first];
     if (i < 0) continue;
 
@@ -799,8 +810,9 @@ void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<in
 
     for (size_t k = first; k < last; k++) {
       const double *x = places[k - first].data();
-      const bool room = !DustAtoms::beyond_fixed_border(lmp, x) &&
-          std::none_of(near.begin(), near.end(), [&](int j) { return touches(j, x, all[k][LOSS_RADIUS]); });
+      const bool room = !DustAtoms::beyond_fixed_border(lmp, x) && std::none_of(near.begin(), near.end(), [&](int j) {
+        return touches(j, x, all[k][LOSS_RADIUS]);
+      });
       leaves[k] = room;
     }
   }
@@ -848,7 +860,8 @@ void FixDustDetach::look_for_soft_contacts()
 {
   too_soft = 1.0;
   warned = false;
-  const double modulus = Dust::combined_modulus(options.elastic[2], options.elastic[3], options.elastic[2], options.elastic[3]);
+  const double modulus =
+      Dust::combined_modulus(options.elastic[2], options.elastic[3], options.elastic[2], options.elastic[3]);
   const auto look = [&](const Granular_NS::GranularModel *model) {
     const Granular_NS::GranSubModNormal *normal = model->normal_model;
     if (!normal->get_material_properties()) return;
@@ -917,15 +930,9 @@ int FixDustDetach::fixed_size() const
   return 2 + NCOLUMNS + 2 + orientation_size() + (functions ? functions->words() : 0);
 }
 
-bool FixDustDetach::oriented() const
-{
-  return rotation || !options.same_orientation();
-}
+bool FixDustDetach::oriented() const { return rotation || !options.same_orientation(); }
 
-int FixDustDetach::orientation_size() const
-{
-  return rotation ? 7 : oriented() ? 4 : 0;
-}
+int FixDustDetach::orientation_size() const { return rotation ? 7 : oriented() ? 4 : 0; }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
 void FixDustDetach::make_exchange_room(const Dust::Collision &collision)
@@ -1028,11 +1035,15 @@ void FixDustDetach::write_restart(FILE *fp)
   double bytes[2] = {double(events.size() + rows.size()) * sizeof(Row), double(losses.size()) * sizeof(Loss)};
   MPI_Allreduce(MPI_IN_PLACE, bytes, 2, MPI_DOUBLE, MPI_SUM, world);
   if (bytes[1] > MOST)
-    error->all(FLERR, "Fix dust/detach {}: a restart file cannot hold the {} grains that are to leave their carriers' mass: use a "
-               "smaller every", id, bytes[1] / sizeof(Loss));
+    error->all(
+        FLERR,
+        "Fix dust/detach {}: a restart file cannot hold the {} grains that are to leave their carriers' mass: use a "
+        "smaller every",
+        id, bytes[1] / sizeof(Loss));
   const bool fits = bytes[0] + bytes[1] < MOST;
   if (!fits && comm->me == 0)
-    error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id, bytes[0] / sizeof(Row));
+    error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id,
+                   bytes[0] / sizeof(Row));
   const auto append = [&list](const auto &records) {
     list.push_back(double(records.size()));
     for (const auto &record : records) list.insert(list.end(), record.begin(), record.end());
@@ -1090,10 +1101,7 @@ void FixDustDetach::unpack_restart(int i, int nth)
   unpack(i, buf + 1);
 }
 
-int FixDustDetach::size_restart(int i)
-{
-  return packed_size(i) + 1;
-}
+int FixDustDetach::size_restart(int i) { return packed_size(i) + 1; }
 
 int FixDustDetach::maxsize_restart()
 {

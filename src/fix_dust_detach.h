@@ -80,11 +80,11 @@ class FixDustDetach : public Fix {
   uint64_t **attached;
   Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever: TURN_EVERY steps ago at most,
   double **angle;                   // with rotation: about which the carrier has turned since
-  double *window_mass;    // lost in the window that is not complete yet
-  double steps;           // since the fix is there
-  double *began;          // of them, when the present contact did
+  double *window_mass;              // lost in the window that is not complete yet
+  double steps;                     // since the fix is there
+  double *began;                    // of them, when the present contact did
   enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
-  bool newcomers;         // atoms were added that may be carriers
+  bool newcomers;    // atoms were added that may be carriers
   void adopt();
   void weigh();
 

@@ -32,13 +32,15 @@ void GranSubModDampingCoeffRestitutionLimited::init()
   if (normal != "hooke" && normal != "hertz" && normal != "hertz/material")
     error->all(FLERR,
                "Damping coeff_restitution/limited works with the normal models hooke, hertz and hertz/material, "
-               "not with {}", normal);
+               "not with {}",
+               normal);
 
   const double e = gm->normal_model->get_damp();
   if (!(e > 0.0 && e <= 1.0))
     error->all(FLERR,
                "Damping coeff_restitution/limited takes the normal model's damping coefficient as coefficient of "
-               "restitution: {} is not above 0 and at most 1", e);
+               "restitution: {} is not above 0 and at most 1",
+               e);
 
   damp = (normal == "hooke") ? Dust::hooke_damping(e) : Dust::hertz_damping(e);
 }

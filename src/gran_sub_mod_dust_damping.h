@@ -16,14 +16,14 @@ GranSubModStyle(coeff_restitution/limited,GranSubModDampingCoeffRestitutionLimit
 namespace LAMMPS_NS {
 namespace Granular_NS {
 
-  // realises the normal model's damping coefficient as coefficient of restitution without ever pulling
+// realises the normal model's damping coefficient as coefficient of restitution without ever pulling
 
-  class GranSubModDampingCoeffRestitutionLimited : public GranSubModDamping {
-   public:
-    GranSubModDampingCoeffRestitutionLimited(class GranularModel *, class LAMMPS *);
-    void init() override;
-    double calculate_forces() override;
-  };
+class GranSubModDampingCoeffRestitutionLimited : public GranSubModDamping {
+ public:
+  GranSubModDampingCoeffRestitutionLimited(class GranularModel *, class LAMMPS *);
+  void init() override;
+  double calculate_forces() override;
+};
 
 }    // namespace Granular_NS
 }    // namespace LAMMPS_NS

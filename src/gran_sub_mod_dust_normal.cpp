@@ -47,17 +47,15 @@ void GranSubModNormalJKRVdW::init()
 {
   const std::string &damping = gm->damping_model->name;
   if (damping == "velocity" || damping == "mass_velocity")
-    error->all(FLERR, "Normal model {} cannot use damping {}, which acts without a neck: use viscoelastic", name, damping);
+    error->all(FLERR, "Normal model {} cannot use damping {}, which acts without a neck: use viscoelastic", name,
+               damping);
   gm->heat_model->size_history = 4;
   gm->size_history = 0;
   for (const GranSubMod *model : gm->sub_models) gm->size_history += model->size_history;
   laid_out = -1;
 }
 
-int GranSubModNormalJKRVdW::neck_place() const
-{
-  return gm->heat_model->history_index;
-}
+int GranSubModNormalJKRVdW::neck_place() const { return gm->heat_model->history_index; }
 
 /* ----------------------------------------------------------------------
    When i and j change places, LAMMPS copies as many values as this model has, but keeps room for the largest sub-model of
@@ -74,7 +72,8 @@ void GranSubModNormalJKRVdW::lay_out_history()
   std::fill_n(gm->transfer_history_factor, gm->size_history, -1.0);
   for (const GranSubMod *model : gm->sub_models)
     if (model->nondefault_history_transfer)
-      std::copy_n(model->transfer_history_factor, model->size_history, gm->transfer_history_factor + model->history_index);
+      std::copy_n(model->transfer_history_factor, model->size_history,
+                  gm->transfer_history_factor + model->history_index);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -90,7 +89,8 @@ void GranSubModNormalJKRVdW::coeffs_to_local()
 
   if (!(Emod > 0.0)) error->all(FLERR, "Normal model {}: E {} must be above 0", name, Emod);
   if (!(damp >= 0.0)) error->all(FLERR, "Normal model {}: eta {} must be at least 0", name, damp);
-  if (!(poiss > -1.0 && poiss <= 0.5)) error->all(FLERR, "Normal model {}: nu {} must be above -1 and at most 0.5", name, poiss);
+  if (!(poiss > -1.0 && poiss <= 0.5))
+    error->all(FLERR, "Normal model {}: nu {} must be above -1 and at most 0.5", name, poiss);
   if (!(hamaker > 0.0)) error->all(FLERR, "Normal model {}: A {} must be above 0", name, hamaker);
   if (!(z0 > 0.0)) error->all(FLERR, "Normal model {}: z0 {} must be above 0", name, z0);
   if (!(z_cut > z0)) error->all(FLERR, "Normal model {}: z_cut {} must be above z0 {}", name, z_cut, z0);
@@ -135,8 +135,10 @@ void GranSubModNormalJKRVdW::use_radius(double Reff)
   const double shared = std::min(delta_c, range);
   if (!warned && Dust::NECK_WORK * delta_c < z0 * shared / (z0 + shared)) {
     warned = true;
-    error->warning(FLERR, "Normal model {}: with an effective radius of {} the neck breaks at a gap of {} z0: a bounce gains energy",
-                   name, Reff, delta_c / z0);
+    error->warning(
+        FLERR,
+        "Normal model {}: with an effective radius of {} the neck breaks at a gap of {} z0: a bounce gains energy",
+        name, Reff, delta_c / z0);
   }
 }
 
@@ -159,7 +161,8 @@ double GranSubModNormalJKRVdW::pulloff_distance(double radi, double radj)
 {
   if (radi <= 0.0 || (radj <= 0.0 && gm->contact_type == PAIR)) return 0.0;
   const double Reff = radj > 0.0 ? Dust::effective_radius(radi, radj) : radi;
-  const double reach = std::max(Dust::breaking_gap(Dust::equilibrium_contact_radius(gamma, Reff, modulus), Reff), range);
+  const double reach =
+      std::max(Dust::breaking_gap(Dust::equilibrium_contact_radius(gamma, Reff, modulus), Reff), range);
   if (gm->contact_type == PAIR) check_skin(reach);
   return reach;
 }
@@ -171,10 +174,11 @@ double GranSubModNormalJKRVdW::pulloff_distance(double radi, double radj)
 void GranSubModNormalJKRVdW::check_skin(double reach)
 {
   const Pair *pair = force->pair_match("granular", 1);
-  const NeighRequest *request = pair ? neighbor->find_request((void *) pair) : nullptr;
+  const NeighRequest *request = pair ? neighbor->find_request((void *)pair) : nullptr;
   if (request && request->get_size() && neighbor->skin < reach)
-    error->all(FLERR, "Normal model {}: this LAMMPS needs a neighbor skin of at least the attraction's reach {}, not {}",
-               name, reach, neighbor->skin);
+    error->all(FLERR,
+               "Normal model {}: this LAMMPS needs a neighbor skin of at least the attraction's reach {}, not {}", name,
+               reach, neighbor->skin);
 }
 
 /* ----------------------------------------------------------------------
@@ -206,8 +210,10 @@ double GranSubModNormalJKRVdW::calculate_contact_radius()
 
 double GranSubModNormalJKRVdW::calculate_forces()
 {
-  if (neck) Fne = Fc * Dust::jkr_force(x);
-  else Fne = gm->delta > -range ? -Dust::hamaker_force(hamaker, z0, gm->Reff, -gm->delta) : 0.0;
+  if (neck)
+    Fne = Fc * Dust::jkr_force(x);
+  else
+    Fne = gm->delta > -range ? -Dust::hamaker_force(hamaker, z0, gm->Reff, -gm->delta) : 0.0;
   return Fne;
 }
 
@@ -215,7 +221,4 @@ double GranSubModNormalJKRVdW::calculate_forces()
    sliding limit per friction coefficient: Thornton, J. Phys. D 24, 1942 (1991); without damping
 ------------------------------------------------------------------------- */
 
-void GranSubModNormalJKRVdW::set_fncrit()
-{
-  Fncrit = neck ? std::fabs(Fne + 2.0 * Fc) : 0.0;
-}
+void GranSubModNormalJKRVdW::set_fncrit() { Fncrit = neck ? std::fabs(Fne + 2.0 * Fc) : 0.0; }

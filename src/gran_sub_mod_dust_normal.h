@@ -17,63 +17,63 @@ GranSubModStyle(jkr/vdw/cut,GranSubModNormalJKRVdWCut,NORMAL);
 namespace LAMMPS_NS {
 namespace Granular_NS {
 
-  // last step at which any contact of a model changed for good, -1 = none has; each rank knows its own contacts
-  struct LastEvents {
-    bigint neck = -1;     // formed or broke
-    bigint slide = -1;    // friction at its limit
-    bigint roll = -1;     // rolling displacement at its limit
-  };
+// last step at which any contact of a model changed for good, -1 = none has; each rank knows its own contacts
+struct LastEvents {
+  bigint neck = -1;     // formed or broke
+  bigint slide = -1;    // friction at its limit
+  bigint roll = -1;     // rolling displacement at its limit
+};
 
-  // adhesive contact: full JKR branch while a neck exists, Hamaker's attraction while none does
+// adhesive contact: full JKR branch while a neck exists, Hamaker's attraction while none does
 
-  class GranSubModNormalJKRVdW : public GranSubModNormal {
-   public:
-    GranSubModNormalJKRVdW(class GranularModel *, class LAMMPS *);
-    void init() override;
-    void coeffs_to_local() override;
-    void mix_coeffs(double *, double *) override;
-    bool touch() override;
-    double pulloff_distance(double, double) override;
-    double calculate_contact_radius() override;
-    double calculate_forces() override;
-    void set_fncrit() override;
+class GranSubModNormalJKRVdW : public GranSubModNormal {
+ public:
+  GranSubModNormalJKRVdW(class GranularModel *, class LAMMPS *);
+  void init() override;
+  void coeffs_to_local() override;
+  void mix_coeffs(double *, double *) override;
+  bool touch() override;
+  double pulloff_distance(double, double) override;
+  double calculate_contact_radius() override;
+  double calculate_forces() override;
+  void set_fncrit() override;
 
-    // of the contact at hand, for models that build on this one
-    bool has_neck() const { return neck; }
-    double pull_off_force() const { return Fc; }
-    double equilibrium_contact_radius() const { return a0; }
+  // of the contact at hand, for models that build on this one
+  bool has_neck() const { return neck; }
+  double pull_off_force() const { return Fc; }
+  double equilibrium_contact_radius() const { return a0; }
 
-    LastEvents last_events;    // slide and roll by the rolling model
+  LastEvents last_events;    // slide and roll by the rolling model
 
-    // of a contact with this history: 0 without a neck, else a/a0 or -a/a0; LAMMPS negates all history when i and j change
-    // places
-    double neck_in(const double *history) const { return history[neck_place()]; }
-    // three values that a rolling model may keep in this history
-    double *rolling_in(double *history) const { return history + neck_place() + 1; }
+  // of a contact with this history: 0 without a neck, else a/a0 or -a/a0; LAMMPS negates all history when i and j change
+  // places
+  double neck_in(const double *history) const { return history[neck_place()]; }
+  // three values that a rolling model may keep in this history
+  double *rolling_in(double *history) const { return history + neck_place() + 1; }
 
-   private:
-    double hamaker, z0, z_cut, range, gamma, modulus;
-    double mixed_modulus;    // 0 if the materials are equal
-    // what depends on the effective radius alone, of the last one
-    double last_Reff, Fc, a0, delta_c, largest_gap;
-    bool warned;
-    void use_radius(double);
-    void check_skin(double);
-    // the contact at hand
-    bool neck;
-    double x, Fne;    // a/a0; elastic-adhesive force
-    // where the history keeps the neck
-    int laid_out;
-    int neck_place() const;
-    void lay_out_history();
-  };
+ private:
+  double hamaker, z0, z_cut, range, gamma, modulus;
+  double mixed_modulus;    // 0 if the materials are equal
+  // what depends on the effective radius alone, of the last one
+  double last_Reff, Fc, a0, delta_c, largest_gap;
+  bool warned;
+  void use_radius(double);
+  void check_skin(double);
+  // the contact at hand
+  bool neck;
+  double x, Fne;    // a/a0; elastic-adhesive force
+  // where the history keeps the neck
+  int laid_out;
+  int neck_place() const;
+  void lay_out_history();
+};
 
-  // the same with the end of the attraction as a coefficient
+// the same with the end of the attraction as a coefficient
 
-  class GranSubModNormalJKRVdWCut : public GranSubModNormalJKRVdW {
-   public:
-    GranSubModNormalJKRVdWCut(class GranularModel *, class LAMMPS *);
-  };
+class GranSubModNormalJKRVdWCut : public GranSubModNormalJKRVdW {
+ public:
+  GranSubModNormalJKRVdWCut(class GranularModel *, class LAMMPS *);
+};
 
 }    // namespace Granular_NS
 }    // namespace LAMMPS_NS

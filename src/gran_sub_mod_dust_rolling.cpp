@@ -22,7 +22,8 @@ using namespace Granular_NS;
    says that the model works with synchronized Verlet, which 4Feb2025 does not have
 ------------------------------------------------------------------------- */
 
-template <typename Model> static auto allow_synchronized_verlet(Model *model, int) -> decltype(void(model->allow_synchronization))
+template <typename Model> static auto allow_synchronized_verlet(Model *model, int)
+    -> decltype(void(model->allow_synchronization))
 {
   model->allow_synchronization = 1;
 }
@@ -47,7 +48,8 @@ GranSubModRollingDominikTielens::GranSubModRollingDominikTielens(GranularModel *
 void GranSubModRollingDominikTielens::coeffs_to_local()
 {
   theta_crit = coeffs[0];
-  if (!(theta_crit > 0.0)) error->all(FLERR, "Rolling model dominik/tielens: theta_crit {} must be above 0", theta_crit);
+  if (!(theta_crit > 0.0))
+    error->all(FLERR, "Rolling model dominik/tielens: theta_crit {} must be above 0", theta_crit);
   find_normal_model();
 }
 
@@ -57,16 +59,14 @@ void GranSubModRollingDominikTielens::find_normal_model()
 {
   normal = dynamic_cast<GranSubModNormalJKRVdW *>(gm->normal_model);
   if (!normal)
-    error->all(FLERR, "Rolling model dominik/tielens needs a normal model that knows the pull-off force: jkr/vdw, not {}",
+    error->all(FLERR,
+               "Rolling model dominik/tielens needs a normal model that knows the pull-off force: jkr/vdw, not {}",
                gm->normal_model ? gm->normal_model->name : "none");
 }
 
 /* ---------------------------------------------------------------------- */
 
-void GranSubModRollingDominikTielens::init()
-{
-  find_normal_model();
-}
+void GranSubModRollingDominikTielens::init() { find_normal_model(); }
 
 /* ----------------------------------------------------------------------
    normal of the full step: another one than gm->nx with synchronized Verlet
@@ -77,10 +77,7 @@ template <typename Model> static auto full_step_normal(Model *gm, int) -> declty
   return gm->synchronized_verlet ? gm->nx_unrotated : gm->nx;
 }
 
-template <typename Model> static double *full_step_normal(Model *gm, long)
-{
-  return gm->nx;
-}
+template <typename Model> static double *full_step_normal(Model *gm, long) { return gm->nx; }
 
 /* ----------------------------------------------------------------------
    the tangential model, called before, has cut its force down to the limit

@@ -16,21 +16,21 @@ GranSubModStyle(dominik/tielens,GranSubModRollingDominikTielens,ROLLING);
 namespace LAMMPS_NS {
 namespace Granular_NS {
 
-  // rolling resistance of an adhesive contact: its pivot lags behind until a critical displacement
+// rolling resistance of an adhesive contact: its pivot lags behind until a critical displacement
 
-  class GranSubModRollingDominikTielens : public GranSubModRolling {
-   public:
-    GranSubModRollingDominikTielens(class GranularModel *, class LAMMPS *);
-    void coeffs_to_local() override;
-    void init() override;
-    void calculate_forces() override;
+class GranSubModRollingDominikTielens : public GranSubModRolling {
+ public:
+  GranSubModRollingDominikTielens(class GranularModel *, class LAMMPS *);
+  void coeffs_to_local() override;
+  void init() override;
+  void calculate_forces() override;
 
-   private:
-    class GranSubModNormalJKRVdW *normal;
-    double theta_crit;
-    void find_normal_model();
-    bool slides() const;
-  };
+ private:
+  class GranSubModNormalJKRVdW *normal;
+  double theta_crit;
+  void find_normal_model();
+  bool slides() const;
+};
 
 }    // namespace Granular_NS
 }    // namespace LAMMPS_NS

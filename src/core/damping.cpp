@@ -31,12 +31,6 @@ double Dust::damping_ratio(double e)
   return std::cosh(invert([](double h) { return 2.0 * h / std::tanh(h); }, target, 0.0, target));
 }
 
-double Dust::hertz_damping(double e)
-{
-  return std::sqrt(5.0) * damping_ratio(e);
-}
+double Dust::hertz_damping(double e) { return std::sqrt(5.0) * damping_ratio(e); }
 
-double Dust::hooke_damping(double e)
-{
-  return 2.0 * damping_ratio(e);
-}
+double Dust::hooke_damping(double e) { return 2.0 * damping_ratio(e); }

@@ -55,8 +55,7 @@ void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
 
 DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material &material, const Criteria &criteria) :
     criteria(criteria), friction(material.friction), rolling(material.rolling), damping(material.damping),
-    carrier_radius(texture.carrier_radius),
-    sites(texture.grains.size())
+    carrier_radius(texture.carrier_radius), sites(texture.grains.size())
 {
   const int n = grains();
   std::vector<int> order(n);
@@ -65,7 +64,9 @@ DetachmentFunctions::DetachmentFunctions(const Texture &texture, const Material 
   all.assign((n + PATCH - 1) / PATCH, ~uint64_t(0));
   if (n % PATCH) all.back() = (uint64_t(1) << (n % PATCH)) - 1;
 
-  const auto mass_of = [&](const Grain &g) { return 4.0 / 3.0 * PI * g.radius * g.radius * g.radius * material.density; };
+  const auto mass_of = [&](const Grain &g) {
+    return 4.0 / 3.0 * PI * g.radius * g.radius * g.radius * material.density;
+  };
   // equal grains have exactly the mean mass, whatever the round-off of a sum
   const auto by_radius = [](const Grain &a, const Grain &b) { return a.radius < b.radius; };
   const auto [finest, coarsest] = std::minmax_element(texture.grains.begin(), texture.grains.end(), by_radius);
@@ -211,7 +212,8 @@ void Collision::become_strong(const DetachmentFunctions &df, Workspace &work)
 
 /* ---------------------------------------------------------------------- */
 
-bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double dt, uint64_t *attached, Workspace &work)
+bool Collision::step(const DetachmentFunctions &df, const Motion &middle, double dt, uint64_t *attached,
+                     Workspace &work)
 {
   Course &c = course;
   Motion motion = middle;
@@ -340,8 +342,9 @@ void Collision::leave_place(const DetachmentFunctions &df, int bit, Mode mode, c
   leave(df, bit, mode, strong->state.now, site.n, velocity, &motion, attached, work);
 }
 
-void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const Quaternion &axes, const double *direction,
-                      const double *velocity, const Motion *now, uint64_t *attached, Workspace &work)
+void Collision::leave(const DetachmentFunctions &df, int bit, Mode mode, const Quaternion &axes,
+                      const double *direction, const double *velocity, const Motion *now, uint64_t *attached,
+                      Workspace &work)
 {
   attached[bit / PATCH] &= ~(uint64_t(1) << (bit % PATCH));
   if (df.criteria.count) {
@@ -367,8 +370,8 @@ Motion Collision::largest_of_weak() const
 bool Collision::has_met(Mode mode, const DetachmentFunctions &df, int bit) const
 {
   const auto &site = df.sites[bit];
-  return strong->history.any([&](const Motion &m) { return df.excess(mode, bit, m); }, 1.0 + df.limit(mode, site.lever).slope,
-                             site.shell);
+  return strong->history.any([&](const Motion &m) { return df.excess(mode, bit, m); },
+                             1.0 + df.limit(mode, site.lever).slope, site.shell);
 }
 
 int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint64_t *attached) const
@@ -393,10 +396,7 @@ int Collision::grains_that(Mode mode, const DetachmentFunctions &df, const uint6
 
 /* ---------------------------------------------------------------------- */
 
-double Collision::peak_acceleration() const
-{
-  return std::sqrt(strong ? strong->history.peak2() : course.largest2);
-}
+double Collision::peak_acceleration() const { return std::sqrt(strong ? strong->history.peak2() : course.largest2); }
 
 /* ---------------------------------------------------------------------- */
 
@@ -431,7 +431,8 @@ void Collision::estimate(const DetachmentFunctions &df, const Strong::Moment &la
   course.frame.to_body(course.spin0, spin0);
   course.frame.to_body(last.spin, spin);
   for (double &x : dv) x = -x;
-  const double fastest = std::sqrt(dot(dv, dv)) + df.reach * (std::sqrt(dot(spin0, spin0)) + 2.0 * std::sqrt(dot(spin, spin)));
+  const double fastest =
+      std::sqrt(dot(dv, dv)) + df.reach * (std::sqrt(dot(spin0, spin0)) + 2.0 * std::sqrt(dot(spin, spin)));
   if (fastest * fastest <= df.slow2) return;
   if (weak()) become_strong(df, work);
   if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
@@ -446,7 +447,7 @@ void Collision::estimate(const DetachmentFunctions &df, const Strong::Moment &la
       const auto &site = df.sites[bit];
       const double *n = site.n, c = site.hold;
       const double dvn = dot(dv, n);
-      if (dvn >= 0.0) return;    // not on the north
+      if (dvn >= 0.0) return;                  // not on the north
       const double needed = c * site.shell;    // square of the velocity from which the grain is not held: Eq. 3b
       // slip over the surface, and the velocity of the surface below the grain's centre
       double slip[3], surface[3], turned[3];
@@ -494,7 +495,8 @@ void Collision::integrate(const DetachmentFunctions &df, uint64_t *attached, Wor
   if (!record) return;    // no step since a restart from a run without INTEGRATE
   record->turn_to(course.frame);
   const MotionBound bound(*record, spin0, peak_acceleration(), df.rolling, df.carrier_radius);
-  if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach) : bound.any_may_leave(df.least, df.largest, df.reach)))
+  if (!(rings ? bound.any_may_ring_off(df.least, df.largest, df.reach)
+              : bound.any_may_leave(df.least, df.largest, df.reach)))
     return;
   if (weak()) become_strong(df, work);
   if (strong->start.empty()) strong->start.assign(attached, attached + df.words());
@@ -603,9 +605,8 @@ int Collision::lost_north(const DetachmentFunctions &df, const uint64_t *attache
   const std::vector<uint64_t> &start = strong->start;
   course.frame.to_body(course.impulse, impulse);
   for (size_t patch = 0; patch < start.size(); patch++)
-    each_bit(start[patch] & ~attached[patch], [&](int k) {
-      lost += dot(df.sites[static_cast<int>(patch) * PATCH + k].n, impulse) > 0.0;
-    });
+    each_bit(start[patch] & ~attached[patch],
+             [&](int k) { lost += dot(df.sites[static_cast<int>(patch) * PATCH + k].n, impulse) > 0.0; });
   return lost;
 }
 
@@ -641,7 +642,7 @@ int Collision::packed_size() const
   size_t size = SIZES + numbers_of<Course>() + (record ? record->packed_size() : 0);
   if (strong)
     size += STRONG_SIZES + numbers_of<Strong::State>() + strong->start.size() +
-        strong->history.kept().size() * numbers_of<Motion>();
+            strong->history.kept().size() * numbers_of<Motion>();
   return static_cast<int>(size);
 }
 

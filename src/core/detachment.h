@@ -35,20 +35,21 @@ enum Mode { NORMAL, TANGENTIAL, SLIDING, ROLLING, NMODES };
 
 /*! What makes grains detach */
 struct Criteria {
-  bool count = true;          //!< grains that meet the sliding and rolling criteria
-  bool ibrahim = false;       //!< sliding and rolling detach too
+  bool count = true;       //!< grains that meet the sliding and rolling criteria
+  bool ibrahim = false;    //!< sliding and rolling detach too
   //! no Eq. 3b, Eq. 4 alone, Eqs. 4-6, or each grain's own motion (surface_motion.h)
   enum { OFF, FRICTIONLESS, ESTIMATE, INTEGRATE } tangential = ESTIMATE;
 };
 
 /*! Material of the grains and of their contact with the carrier, in one consistent set of units */
 struct Material {
-  double density;     //!< of the grains
-  double gamma;       //!< surface energy, pull-off force 3 pi gamma R_12
-  double modulus;     //!< combined modulus E* of grain and carrier
-  double friction;    //!< mu_f
+  double density;           //!< of the grains
+  double gamma;             //!< surface energy, pull-off force 3 pi gamma R_12
+  double modulus;           //!< combined modulus E* of grain and carrier
+  double friction;          //!< mu_f
   double rolling = 0.15;    //!< theta_crit; only INTEGRATE uses it
-  double damping = -1.0;    //!< damping ratio of the contact; INTEGRATE then lets grains ring (normal_motion.h), below 0 not
+  double damping =
+      -1.0;    //!< damping ratio of the contact; INTEGRATE then lets grains ring (normal_motion.h), below 0 not
 };
 
 /*! One texture made ready for evaluation; shared by all carriers, never changed */
@@ -90,13 +91,13 @@ class DetachmentFunctions {
   double friction, rolling, damping;
   double carrier_radius;
   double mass;
-  double least, largest;            // of hold
-  double reach;                     // largest shell
-  double least_to[NMODES];          // least inertia force per mass that meets SLIDING or ROLLING for some grain
-  double moving;                    // the one that can make a grain slide (or leave), within limits
-  double still2, per_arm2;          // moving^2/3; (reach/(2/5 R_p^2))^2
-  double slow2;                     // no tangential lift-off below this square of a velocity
-  std::vector<uint64_t> all;        // bits that hold a grain: all but the last ones of the last word
+  double least, largest;        // of hold
+  double reach;                 // largest shell
+  double least_to[NMODES];      // least inertia force per mass that meets SLIDING or ROLLING for some grain
+  double moving;                // the one that can make a grain slide (or leave), within limits
+  double still2, per_arm2;      // moving^2/3; (reach/(2/5 R_p^2))^2
+  double slow2;                 // no tangential lift-off below this square of a velocity
+  std::vector<uint64_t> all;    // bits that hold a grain: all but the last ones of the last word
   // by bit: all that is asked of a grain in one cache line
   struct alignas(64) Site {
     double n[3];
@@ -149,12 +150,12 @@ struct Strong {
     double time;
     double impulse[3], spin[3];    // as of Collision
   };
-  struct State {                   // in space
-    Quaternion now;                // the carrier
-    Moment lively;                 // at the last lively step
-    double count[NMODES];          // of the grains that have left, those that had met SLIDING and ROLLING
+  struct State {             // in space
+    Quaternion now;          // the carrier
+    Moment lively;           // at the last lively step
+    double count[NMODES];    // of the grains that have left, those that had met SLIDING and ROLLING
   } state;
-  std::vector<uint64_t> start;     // attached at begin(), kept from when the first grain could leave
+  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
   AccelerationHistory history;
   LiftOffWindow window;
 };
@@ -236,16 +237,16 @@ class alignas(64) Collision {
   std::unique_ptr<Strong> strong;    // from when inertia could make a grain slide
   struct Course {                    // in space
     double time;
-    double impulse[3];               // contact force/carrier mass, integrated since begin()
-    double steps;                    // so far
-    double burst, lively_end;        // of them, when the present or last lively ones began and ended
+    double impulse[3];           // contact force/carrier mass, integrated since begin()
+    double steps;                // so far
+    double burst, lively_end;    // of them, when the present or last lively ones began and ended
     // of the weak time
-    double largest2;                 // square of the largest acceleration
-    double turned[3];                // angle about which the carrier turned
-    Motion largest;                  // that of the largest acceleration, and the angle until then
+    double largest2;     // square of the largest acceleration
+    double turned[3];    // angle about which the carrier turned
+    Motion largest;      // that of the largest acceleration, and the angle until then
     double largest_turned[3];
-    Quaternion frame;                // the carrier at first contact
-    double spin0[3];                 // before contact
+    Quaternion frame;    // the carrier at first contact
+    double spin0[3];     // before contact
   } course;
   std::unique_ptr<ImpulseRecord> record;    // with INTEGRATE only, from the first step
 
@@ -257,8 +258,8 @@ class alignas(64) Collision {
   void estimate(const DetachmentFunctions &functions, const Strong::Moment &last, uint64_t *attached, Workspace &work);
   void integrate(const DetachmentFunctions &functions, uint64_t *attached, Workspace &work);
   struct Step {
-    double dt, acceleration[3];     // mean
-    double after[3], spin[3];       // acceleration and spin at the end
+    double dt, acceleration[3];    // mean
+    double after[3], spin[3];      // acceleration and spin at the end
   };
   std::vector<Step> steps(const double *spin0) const;
   // a grain leaves the place where it stuck, or one along the surface

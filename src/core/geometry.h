@@ -10,10 +10,7 @@ namespace Dust {
 constexpr double PI = 3.14159265358979323846;
 
 /*! Scalar and vector product of two vectors of three */
-inline double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+inline double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 inline void cross(const double *a, const double *b, double *c)
 {

@@ -15,10 +15,7 @@ namespace Dust {
  * \param hamaker  Hamaker constant A of the two materials, energy
  * \param z0       least distance of the surfaces, length
  * \return         gamma, energy/area; the work of adhesion is 2 gamma */
-inline double surface_energy(double hamaker, double z0)
-{
-  return hamaker / (18.0 * PI * z0 * z0);
-}
+inline double surface_energy(double hamaker, double z0) { return hamaker / (18.0 * PI * z0 * z0); }
 
 /*! Van der Waals force of two spheres without a neck, A R/(6 (z0 + h)^2) at the gap h >= 0, positive = attraction.
  *  (The paper prints R^2, which is no force.)

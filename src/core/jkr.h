@@ -15,10 +15,7 @@
 namespace Dust {
 
 /*! Effective radius R_12 of two spheres */
-inline double effective_radius(double r1, double r2)
-{
-  return r1 * r2 / (r1 + r2);
-}
+inline double effective_radius(double r1, double r2) { return r1 * r2 / (r1 + r2); }
 
 /*! Combined modulus E* of two materials with Young's moduli and Poisson's ratios */
 inline double combined_modulus(double e1, double nu1, double e2, double nu2)
@@ -27,10 +24,7 @@ inline double combined_modulus(double e1, double nu1, double e2, double nu2)
 }
 
 /*! Pull-off force F_c = 3 pi gamma R_12 */
-inline double pull_off_force(double gamma, double r12)
-{
-  return 3.0 * PI * gamma * r12;
-}
+inline double pull_off_force(double gamma, double r12) { return 3.0 * PI * gamma * r12; }
 
 /*! Contact radius without load, a0 = (9 pi gamma R_12^2/E*)^(1/3) */
 inline double equilibrium_contact_radius(double gamma, double r12, double modulus)
@@ -42,16 +36,10 @@ inline double equilibrium_contact_radius(double gamma, double r12, double modulu
 constexpr double ROOT_6 = 1.8171205928321397;
 
 /*! Overlap without load, delta_0 = a0^2/(3 R_12) */
-inline double equilibrium_overlap(double a0, double r12)
-{
-  return a0 * a0 / (3.0 * r12);
-}
+inline double equilibrium_overlap(double a0, double r12) { return a0 * a0 / (3.0 * r12); }
 
 /*! Gap to which the neck stretches before it breaks, delta_c = a0^2/(2 6^(1/3) R_12) */
-inline double breaking_gap(double a0, double r12)
-{
-  return a0 * a0 / (2.0 * ROOT_6 * r12);
-}
+inline double breaking_gap(double a0, double r12) { return a0 * a0 / (2.0 * ROOT_6 * r12); }
 
 /*! Work of a neck along the branch from the overlap 0 to its end, in F_c delta_c */
 constexpr double NECK_WORK = 0.9355;

@@ -32,7 +32,8 @@ Change change(const Motion &from, const Motion &to, const double *axis, double r
 
 /* ---------------------------------------------------------------------- */
 
-void LiftOffWindow::look(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached, std::vector<int> &leaving)
+void LiftOffWindow::look(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached,
+                         std::vector<int> &leaving)
 {
   if (end < 0.0) {
     open(df, motion, attached, leaving);
@@ -64,7 +65,8 @@ void LiftOffWindow::look(const DetachmentFunctions &df, const Motion &motion, co
    about 500 grains of 4500 to come while g grows, whatever |g|, as the number that holds goes with 1/|g|
 ------------------------------------------------------------------------- */
 
-void LiftOffWindow::open(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached, std::vector<int> &leaving)
+void LiftOffWindow::open(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached,
+                         std::vector<int> &leaving)
 {
   const double *a = motion.acceleration, size = std::sqrt(dot(a, a)), spun = df.reach * dot(motion.spin, motion.spin);
   for (int d = 0; d < 3; d++) axis[d] = size > 0.0 ? -a[d] / size : d == 2;
@@ -84,13 +86,16 @@ void LiftOffWindow::open(const DetachmentFunctions &df, const Motion &motion, co
   constexpr double ROUND_OFF = 1.0e-11;
   margin = ROUND_OFF * (size + spun);
   const double horizon = pays ? length : 0.0;
-  const auto is_late = [&](double missing, double u) { return missing - margin > horizon * std::max(std::fabs(u), ratio); };
+  const auto is_late = [&](double missing, double u) {
+    return missing - margin > horizon * std::max(std::fabs(u), ratio);
+  };
   for (int p = 0; p < df.words(); p++) {
     const auto &patch = df.patches[p];
     if (!attached[p]) continue;
     // the first grain to lift off could be at either end of the patch along the axis
     const double u = dot(axis, patch.centre), fore = u + patch.radius, aft = u - patch.radius;
-    if (is_late(patch.least_hold - spun - size * fore, fore) && is_late(patch.least_hold - spun - size * aft, aft)) continue;
+    if (is_late(patch.least_hold - spun - size * fore, fore) && is_late(patch.least_hold - spun - size * aft, aft))
+      continue;
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
       const auto &site = df.sites[bit];

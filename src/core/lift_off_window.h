@@ -26,22 +26,24 @@ class LiftOffWindow {
   void close() { end = -1.0; }
 
   /*! Appends the attached grains that lift off at this motion, in any order */
-  void look(const DetachmentFunctions &functions, const Motion &motion, const uint64_t *attached, std::vector<int> &leaving);
+  void look(const DetachmentFunctions &functions, const Motion &motion, const uint64_t *attached,
+            std::vector<int> &leaving);
 
  private:
   static constexpr int TICKS = 256;
   double axis[3], ratio;
-  double clock, end = -1.0;       // closed if `end` is negative
-  double margin;                  // for round-off
-  Motion last = {};               // of the last look
-  int tick;                       // of the last look
+  double clock, end = -1.0;    // closed if `end` is negative
+  double margin;               // for round-off
+  Motion last = {};            // of the last look
+  int tick;                    // of the last look
   struct Entry {
     int bit, next;
   };
   std::vector<Entry> entries;
   std::vector<int> first;    // of the entries to look at in each tick, -1 if none
 
-  void open(const DetachmentFunctions &functions, const Motion &motion, const uint64_t *attached, std::vector<int> &leaving);
+  void open(const DetachmentFunctions &functions, const Motion &motion, const uint64_t *attached,
+            std::vector<int> &leaving);
   void put(int entry, int at)
   {
     entries[entry].next = first[at];

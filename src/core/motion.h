@@ -16,7 +16,8 @@ namespace Dust {
  *  |difference of omega| |sum of omega| */
 inline double spin_difference(const double *w, const double *v)
 {
-  const double difference[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]}, sum[3] = {w[0] + v[0], w[1] + v[1], w[2] + v[2]};
+  const double difference[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]},
+               sum[3] = {w[0] + v[0], w[1] + v[1], w[2] + v[2]};
   return std::sqrt(dot(difference, difference) * dot(sum, sum));
 }
 
@@ -55,10 +56,7 @@ struct Motion {
   }
 
   /*! Its outward part g.n, in which the angular acceleration has none */
-  double lift(const double *n, double shell) const
-  {
-    return shell * centrifugal(n) - dot(acceleration, n);
-  }
+  double lift(const double *n, double shell) const { return shell * centrifugal(n) - dot(acceleration, n); }
   double centrifugal(const double *n) const
   {
     const double along = dot(spin, n);

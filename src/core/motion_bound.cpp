@@ -11,8 +11,8 @@
 
 using namespace Dust;
 
-MotionBound::MotionBound(const ImpulseRecord &record, const double *spin, double peak, double rolling, double carrier_radius) :
-    peak(peak), rolling(rolling), carrier_radius(carrier_radius)
+MotionBound::MotionBound(const ImpulseRecord &record, const double *spin, double peak, double rolling,
+                         double carrier_radius) : peak(peak), rolling(rolling), carrier_radius(carrier_radius)
 {
   double last[3] = {spin[0], spin[1], spin[2]}, before[3] = {0.0, 0.0, 0.0};
   fastest = std::sqrt(dot(last, last));
@@ -62,7 +62,8 @@ MotionBound::Bound MotionBound::of(const double *n, double hold, double shell) c
 {
   const double own = spring(hold, shell) + spin(shell);
   const double turn = MARGIN * ((along + aside + own) / shell + fastest) * time;
-  const double u = dot(n, axis), across = std::sqrt(std::max(0.0, 1.0 - u * u)) + turn;    // of the axis in the tangential plane
+  const double u = dot(n, axis),
+               across = std::sqrt(std::max(0.0, 1.0 - u * u)) + turn;    // of the axis in the tangential plane
   const double w = along * std::min(1.0, across) + aside + own + shell * fastest;
   return {turn, MARGIN * w * w / shell};
 }

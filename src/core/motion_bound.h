@@ -56,11 +56,11 @@ class MotionBound {
  private:
   double peak, rolling, carrier_radius;
   double time = 0.0;
-  double axis[3] = {0.0, 0.0, 0.0};       // of all impulses together
-  double along = 0.0, aside = 0.0;        // sums of what each has along the axis and aside of it
-  double fastest = 0.0;                   // omega_max
-  double spun = 0.0;                      // integral |alpha| dt
-  double changes = 0.0;                   // integral |da/dt| dt, from 0 to 0
+  double axis[3] = {0.0, 0.0, 0.0};    // of all impulses together
+  double along = 0.0, aside = 0.0;     // sums of what each has along the axis and aside of it
+  double fastest = 0.0;                // omega_max
+  double spun = 0.0;                   // integral |alpha| dt
+  double changes = 0.0;                // integral |da/dt| dt, from 0 to 0
 
   static constexpr double MARGIN = 1.02;    // for the steps of SurfaceMotion
   struct Largest {

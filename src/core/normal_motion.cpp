@@ -27,10 +27,7 @@ double at_rest(double load) { return std::cbrt(0.5 * (1.0 + std::sqrt(std::max(0
 
 }    // namespace
 
-NormalMotion::NormalMotion(double damping) : damping(damping * std::sqrt(STIFFNESS))
-{
-  clear();
-}
+NormalMotion::NormalMotion(double damping) : damping(damping * std::sqrt(STIFFNESS)) { clear(); }
 
 /* ---------------------------------------------------------------------- */
 
@@ -89,7 +86,8 @@ void NormalMotion::advance(const double *load, double dt, int steps)
       const double drag = damping * y2 * step, force = G[i] + 4.0 * y3 * (y3 - 1.0);
       const double u = ((1.0 - drag) * U[i] - step * force) / (1.0 + drag), d = D[i] + step * u;
       // y goes on as it did, and one step of Newton's method
-      const double along = y[i] + step * u * slope[i], guess = along > LEAST_Y ? along : LEAST_Y, g3 = guess * guess * guess;
+      const double along = y[i] + step * u * slope[i], guess = along > LEAST_Y ? along : LEAST_Y,
+                   g3 = guess * guess * guess;
       const double per = 1.0 / (ROOT_6 * (8.0 * g3 - 4.0 / 3.0));
       const double more = (d - ROOT_6 * (2.0 * g3 - 4.0 / 3.0) * guess) * per, next = guess + (more < 0.1 ? more : 0.1);
       y[i] = next > LEAST_Y ? next : LEAST_Y;

@@ -54,9 +54,9 @@ class NormalMotion {
   double damping;    // zeta'
   int count;
   // by grain
-  double here[LANES];    // 1 as long as it is attached, then 0
-  double rate[LANES], gap[LANES];    // sqrt(c/delta_c), delta_c
-  double G[LANES];       // F_n/F_c
+  double here[LANES];                                   // 1 as long as it is attached, then 0
+  double rate[LANES], gap[LANES];                       // sqrt(c/delta_c), delta_c
+  double G[LANES];                                      // F_n/F_c
   double D[LANES], U[LANES], y[LANES], slope[LANES];    // U = D' half a step ago; slope = dy/dD
 
   void advance(const double *load, double dt, int steps);

@@ -14,7 +14,8 @@ Quaternion Quaternion::operator*(const Quaternion &b) const
 {
   const double *p = q, *r = b.q;
   return {{p[0] * r[0] - p[1] * r[1] - p[2] * r[2] - p[3] * r[3], p[0] * r[1] + p[1] * r[0] + p[2] * r[3] - p[3] * r[2],
-           p[0] * r[2] - p[1] * r[3] + p[2] * r[0] + p[3] * r[1], p[0] * r[3] + p[1] * r[2] - p[2] * r[1] + p[3] * r[0]}};
+           p[0] * r[2] - p[1] * r[3] + p[2] * r[0] + p[3] * r[1],
+           p[0] * r[3] + p[1] * r[2] - p[2] * r[1] + p[3] * r[0]}};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -50,5 +51,6 @@ Quaternion Dust::random_orientation(uint64_t seed, uint64_t number)
     x = double(state >> 11) * 0x1p-53;
   }
   const double a = std::sqrt(1.0 - u[0]), b = std::sqrt(u[0]);
-  return {{a * std::sin(2.0 * PI * u[1]), a * std::cos(2.0 * PI * u[1]), b * std::sin(2.0 * PI * u[2]), b * std::cos(2.0 * PI * u[2])}};
+  return {{a * std::sin(2.0 * PI * u[1]), a * std::cos(2.0 * PI * u[1]), b * std::sin(2.0 * PI * u[2]),
+           b * std::cos(2.0 * PI * u[2])}};
 }

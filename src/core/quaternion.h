@@ -49,7 +49,8 @@ struct Quaternion {
     // v + 2 w (u x v) + 2 u x (u x v) with u = (x, y, z)
     const double x = q[1], y = q[2], z = q[3];
     const double tx = 2.0 * (y * v[2] - z * v[1]), ty = 2.0 * (z * v[0] - x * v[2]), tz = 2.0 * (x * v[1] - y * v[0]);
-    const double r[3] = {v[0] + w * tx + y * tz - z * ty, v[1] + w * ty + z * tx - x * tz, v[2] + w * tz + x * ty - y * tx};
+    const double r[3] = {v[0] + w * tx + y * tz - z * ty, v[1] + w * ty + z * tx - x * tz,
+                         v[2] + w * tz + x * ty - y * tx};
     for (int d = 0; d < 3; d++) result[d] = r[d];
   }
 };

@@ -33,10 +33,7 @@ inline bool roll_on(double *xi, const double *n, const double *velocity, double 
 
 /*! Rolling stiffness k of the moment M = k xi of resistance, 4 F_c (a/a0)^(3/2)
  *  \param x  a/a0 */
-inline double rolling_stiffness(double pull_off_force, double x)
-{
-  return 4.0 * pull_off_force * x * std::sqrt(x);
-}
+inline double rolling_stiffness(double pull_off_force, double x) { return 4.0 * pull_off_force * x * std::sqrt(x); }
 
 }    // namespace Dust
 

@@ -37,7 +37,8 @@ void SurfaceMotion::clear()
 
 /* ---------------------------------------------------------------------- */
 
-void SurfaceMotion::add(const double *direction, double hold_of, double grain_radius, double carrier_radius, const double *spin)
+void SurfaceMotion::add(const double *direction, double hold_of, double grain_radius, double carrier_radius,
+                        const double *spin)
 {
   const int i = count++;
   here[i] = 1.0;
@@ -85,7 +86,8 @@ void SurfaceMotion::advance(const double *a, const double *spin, double dt)
 
     // what the carrier's turning brings: omega x n before and after, and with it w
     const double bx = at * (oy * nz - oz * ny), by = at * (oz * nx - ox * nz), bz = at * (ox * ny - oy * nx);
-    const double cx = bx + at * (dy * nz - dz * ny), cy = by + at * (dz * nx - dx * nz), cz = bz + at * (dx * ny - dy * nx);
+    const double cx = bx + at * (dy * nz - dz * ny), cy = by + at * (dz * nx - dx * nz),
+                 cz = bz + at * (dx * ny - dy * nx);
     const double wx = vx + shell[i] * bx, wy = vy + shell[i] * by, wz = vz + shell[i] * bz;
     const double on = (ox + 0.5 * dx) * nx + (oy + 0.5 * dy) * ny + (oz + 0.5 * dz) * nz;
 
@@ -111,7 +113,8 @@ void SurfaceMotion::advance(const double *a, const double *spin, double dt)
     const double lift = (mx * mx + my * my + mz * mz) * per_shell[i] - an;
     const double stays = lift > c ? 0.0 : at;
     const double rest = stays * 0.5 * dt, carrier = stays * shell[i], spun = stays * radius[i], r = radius[i];
-    vx = mx + rest * (tx + fx) - carrier * cx, vy = my + rest * (ty + fy) - carrier * cy, vz = mz + rest * (tz + fz) - carrier * cz;
+    vx = mx + rest * (tx + fx) - carrier * cx, vy = my + rest * (ty + fy) - carrier * cy,
+    vz = mz + rest * (tz + fz) - carrier * cz;
     px += r * bx - 2.5 * h * (fx + s * qx) - spun * cx;
     py += r * by - 2.5 * h * (fy + s * qy) - spun * cy;
     pz += r * bz - 2.5 * h * (fz + s * qz) - spun * cz;

@@ -79,15 +79,18 @@ class SurfaceMotion {
   // the motion of a grain, at last when it left; vectors of the surface
   double direction(int grain, int d) const { return n[d][grain]; }
   double velocity(int grain, int d) const { return v[d][grain] + carried(grain, d) * shell[grain]; }    //!< w
-  double rolling_velocity(int grain, int d) const { return p[d][grain] + carried(grain, d) * radius[grain]; }    //!< R_d Omega x n
-  double rolling_angle(int grain, int d) const { return psi[d][grain]; }      //!< xi/R_12
+  double rolling_velocity(int grain, int d) const
+  {
+    return p[d][grain] + carried(grain, d) * radius[grain];
+  }                                                                         //!< R_d Omega x n
+  double rolling_angle(int grain, int d) const { return psi[d][grain]; }    //!< xi/R_12
 
  private:
   double friction, rolling2;
   int count;
   // by grain
-  double here[LANES];    // 1 as long as it is attached, then 0
-  double hold[LANES], per_hold[LANES], stiffness[LANES];    // c, 1/c, 2 c R_12/R_d
+  double here[LANES];                                                         // 1 as long as it is attached, then 0
+  double hold[LANES], per_hold[LANES], stiffness[LANES];                      // c, 1/c, 2 c R_12/R_d
   double shell[LANES], per_shell[LANES], radius[LANES], per_radius[LANES];    // |r_pd|, R_d
   double n[3][LANES], psi[3][LANES];
   double v[3][LANES], p[3][LANES];    // of a grain that left: w and R_d Omega x n

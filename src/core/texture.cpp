@@ -21,8 +21,8 @@ using namespace Dust;
 
 namespace {
 
-constexpr double MIN_GAP = 1.0e-3;        // between two grains, of the sum of their radii
-constexpr double CUT = 0.01;              // of a size distribution, at either end, by volume
+constexpr double MIN_GAP = 1.0e-3;    // between two grains, of the sum of their radii
+constexpr double CUT = 0.01;          // of a size distribution, at either end, by volume
 constexpr double MOST_GRAINS = 1.0e8;
 
 // squared chord between two unit vectors: exact where the dot product would round small distances away
@@ -110,8 +110,8 @@ class ShellGrid {
 class Placement {
  public:
   Placement(double lowest_z, double carrier_radius, double largest, double smallest, std::mt19937_64 &random) :
-      zlo(lowest_z), carrier(carrier_radius), least(smallest), size(largest), cells_for(largest), tries(0), grid(reach()),
-      random(random)
+      zlo(lowest_z), carrier(carrier_radius), least(smallest), size(largest), cells_for(largest), tries(0),
+      grid(reach()), random(random)
   {
   }
 
@@ -177,7 +177,8 @@ class Placement {
     grain.radius = size;
     const double z = cell.z0 + uniform(random) * (cell.z1 - cell.z0);
     point_at(z, cell.phi0 + uniform(random) * (cell.phi1 - cell.phi0), grain.n);
-    if (grid.any_near(grain.n, [&](int id) { return chord2(grain.n, grains[id].n) < least_chord2(size, grains[id].radius); }))
+    if (grid.any_near(grain.n,
+                      [&](int id) { return chord2(grain.n, grains[id].n) < least_chord2(size, grains[id].radius); }))
       return false;
     grid.insert(static_cast<int>(grains.size()), grain.n);
     grains.push_back(grain);
@@ -197,7 +198,8 @@ class Placement {
     double radius = 0.0;
     for (auto &c : corner) radius = std::max(radius, std::sqrt(chord2(middle, c)));
     return grid.any_near(middle, [&](int id) {
-      const double limit = std::sqrt(least_chord2(cells_for, grains[id].radius)) - radius;    // chords obey the triangle inequality
+      const double limit =
+          std::sqrt(least_chord2(cells_for, grains[id].radius)) - radius;    // chords obey the triangle inequality
       return limit > 0.0 && chord2(middle, grains[id].n) < limit * limit;
     });
   }
@@ -238,10 +240,7 @@ void turn_from_south(const double *axis, double *v)
   for (int d = 0; d < 3; d++) v[d] /= length;
 }
 
-[[noreturn]] void fail(const std::string &what)
-{
-  throw TextureError(what);
-}
+[[noreturn]] void fail(const std::string &what) { throw TextureError(what); }
 
 std::string text(double x)
 {
@@ -328,8 +327,8 @@ static Texture place(double carrier_radius, const std::vector<double> &radii, do
   for (const double radius : radii) {
     if (!placement.place(radius))
       fail("coverage " + text(coverage) + " cannot be placed: the monolayer is full at " +
-           text(0.25 * sum / (carrier_radius * carrier_radius)) + " (" + std::to_string(placement.grains.size()) + " of " +
-           std::to_string(radii.size()) + " grains)");
+           text(0.25 * sum / (carrier_radius * carrier_radius)) + " (" + std::to_string(placement.grains.size()) +
+           " of " + std::to_string(radii.size()) + " grains)");
     sum += radius * radius;
   }
   for (Grain &grain : placement.grains) turn_from_south(bare.axis, grain.n);
@@ -352,8 +351,8 @@ Texture Dust::place_monolayer(double carrier_radius, double grain_radius, double
 
 /* ---------------------------------------------------------------------- */
 
-Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &sizes, double coverage, const BareCap &bare,
-                              uint64_t seed)
+Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &sizes, double coverage,
+                              const BareCap &bare, uint64_t seed)
 {
   if (!(sizes.x50 > 0.0 && std::isfinite(sizes.x50))) fail("median diameter " + text(sizes.x50) + " is not above 0");
   const bool lognormal = sizes.kind == SizeDistribution::LOGNORMAL;
@@ -363,7 +362,8 @@ Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &siz
   check_sizes(carrier_radius, 0.5 * sizes.quantile(1.0 - CUT), bare);
   check_coverage(coverage);
   std::mt19937_64 random(seed);
-  return place(carrier_radius, draw_radii(sizes, 4.0 * coverage * carrier_radius * carrier_radius, random), coverage, bare, random);
+  return place(carrier_radius, draw_radii(sizes, 4.0 * coverage * carrier_radius * carrier_radius, random), coverage,
+               bare, random);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -437,7 +437,8 @@ Texture Dust::read_texture(std::istream &in)
     next_line(word.empty() ? "a grain" : "'" + word + "'");
     std::istringstream words(line);
     std::string token;
-    if (!word.empty() && (!(words >> token) || token != word)) fail_here("'" + word + "' should be here, not '" + line + "'");
+    if (!word.empty() && (!(words >> token) || token != word))
+      fail_here("'" + word + "' should be here, not '" + line + "'");
     std::vector<double> values;
     while (words >> token) {
       char *rest;

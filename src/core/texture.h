@@ -42,9 +42,9 @@ struct Texture {
 struct SizeDistribution {
   enum Kind {
     LOGNORMAL,    //!< spread = geometric standard deviation, above 1
-    RRSB          //!< Rosin-Rammler-Sperling-Bennett, 1 - exp(-(x/x')^n) with x' = x50/(ln 2)^(1/n): spread = n, above 0
+    RRSB    //!< Rosin-Rammler-Sperling-Bennett, 1 - exp(-(x/x')^n) with x' = x50/(ln 2)^(1/n): spread = n, above 0
   } kind;
-  double x50;       //!< median diameter by volume, x_50,3 (length)
+  double x50;    //!< median diameter by volume, x_50,3 (length)
   double spread;
 
   /*! Diameter below which this fraction of the volume would be without the cut; fraction between 0.01 and 0.99 */
@@ -65,7 +65,8 @@ double grains_for_coverage(double coverage, double carrier_radius, double grain_
  * \param seed      the same seed gives the same texture, to the round-off of the C library's functions
  * \throw TextureError  wrong arguments, or coverage too high to be placed: near 0.547 of the shell of the centres
  *                      outside the cap the placement jams */
-Texture place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare, uint64_t seed);
+Texture place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare,
+                        uint64_t seed);
 
 /*! Monolayer of grains drawn from a distribution until their summed cross-section reaches the coverage, which the last one
  *  exceeds by a part of its own; placed from large to small. No gap between two grains is below 0.001 of the sum of their

@@ -45,7 +45,7 @@ std::string difference(void *lmp)
     const int size = lammps_extract_setting(lmp, integer.name);
     if (size != integer.size)
       return "it was compiled for " + std::to_string(8 * integer.size) + "-bit " + integer.name +
-          " and this LAMMPS has " + std::to_string(8 * size) + "-bit " + integer.name + " (LAMMPS_SIZES)";
+             " and this LAMMPS has " + std::to_string(8 * size) + "-bit " + integer.name + " (LAMMPS_SIZES)";
   }
   if (!lammps_config_has_mpi_support()) return "it was compiled with MPI and this LAMMPS without";
   return "";

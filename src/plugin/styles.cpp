@@ -29,14 +29,11 @@ using namespace LAMMPS_NS;
 
 namespace {
 
-template <class Style> void *create(void *lmp)
-{
-  return new Style((LAMMPS *) lmp);
-}
+template <class Style> void *create(void *lmp) { return new Style((LAMMPS *)lmp); }
 
 template <class Style> void *create_with_args(void *lmp, int narg, char **arg)
 {
-  return new Style((LAMMPS *) lmp, narg, arg);
+  return new Style((LAMMPS *)lmp, narg, arg);
 }
 
 // LAMMPS keeps the pointers that it is given for as long as the process lives
@@ -48,10 +45,7 @@ const char *remember(const std::string &text)
 
 class Registry {
  public:
-  Registry(LAMMPS *lmp, void *handle, lammpsplugin_regfunc regfunc) :
-      lmp(lmp), handle(handle), regfunc(regfunc)
-  {
-  }
+  Registry(LAMMPS *lmp, void *handle, lammpsplugin_regfunc regfunc) : lmp(lmp), handle(handle), regfunc(regfunc) {}
 
   // styles made from the LAMMPS instance alone: pair, command
   template <class Creator>
@@ -59,7 +53,7 @@ class Registry {
   {
     lammpsplugin_t plugin = {};
     plugin.creator.v1 = create;
-    publish(plugin, style, name, (Creator) create, map);
+    publish(plugin, style, name, (Creator)create, map);
   }
 
   // styles made from the arguments of their command too: fix, compute
@@ -68,7 +62,7 @@ class Registry {
   {
     lammpsplugin_t plugin = {};
     plugin.creator.v2 = create;
-    publish(plugin, style, name, (Creator) create, map);
+    publish(plugin, style, name, (Creator)create, map);
   }
 
  private:
@@ -76,9 +70,8 @@ class Registry {
   // and after `clear`) and the map of each instance, which decides what a deck gets. LAMMPS ignores a
   // style that the process knows already, which on 4Feb2025 leaves a second instance without it; so the first is
   // filled once and the second always.
-  template <class Creator>
-  void publish(lammpsplugin_t &plugin, const char *style, const char *name, Creator create,
-               std::map<std::string, Creator> *map)
+  template <class Creator> void publish(lammpsplugin_t &plugin, const char *style, const char *name, Creator create,
+                                        std::map<std::string, Creator> *map)
   {
     const int index = plugin_find(style, name);
     if (index < 0) {
@@ -105,8 +98,8 @@ class Registry {
 
 extern "C" __attribute__((visibility("default"))) void dust_register_styles(void *ptr, void *handle, void *regfunc)
 {
-  auto *lmp = (LAMMPS *) ptr;
-  Registry registry(lmp, handle, (lammpsplugin_regfunc) regfunc);
+  auto *lmp = (LAMMPS *)ptr;
+  Registry registry(lmp, handle, (lammpsplugin_regfunc)regfunc);
 
   // with KIND_CLASS defined, a style header holds its macro alone
 
@@ -121,8 +114,7 @@ extern "C" __attribute__((visibility("default"))) void dust_register_styles(void
 #undef FIX_CLASS
 
 #define COMPUTE_CLASS
-#define ComputeStyle(key, Class) \
-  registry.add("compute", #key, create_with_args<Class>, lmp->modify->compute_map)
+#define ComputeStyle(key, Class) registry.add("compute", #key, create_with_args<Class>, lmp->modify->compute_map)
 #include "dust_style_compute.h"
 #undef COMPUTE_CLASS
 

@@ -56,7 +56,9 @@ TEST(AccelerationHistory, AnswersAsALookAtEachMotionDoes)
         EXPECT_EQ(history.largest_push(n, SHELL, hint), push);
         // at limits just below and above the largest
         for (double part : {0.999, 1.001}) {
-          const auto lifts = [&](const Motion &m) { return m.lift(n, SHELL) - (lift > 0.0 ? part : 1.0 / part) * lift; };
+          const auto lifts = [&](const Motion &m) {
+            return m.lift(n, SHELL) - (lift > 0.0 ? part : 1.0 / part) * lift;
+          };
           const auto pulls = [&](const Motion &m) {
             double g[3];
             m.inertia(n, SHELL, g);

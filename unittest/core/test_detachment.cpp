@@ -62,7 +62,8 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
     rolling = std::min(rolling, hold * lever / std::hypot(1.0, lever));
   }
   const double slide = least * 2.0 * m.friction / std::hypot(1.0, m.friction);
-  const double sliding = criteria.ibrahim ? std::min({least, slide, rolling}) : std::min(least, std::max(0.1 * least, slide));
+  const double sliding =
+      criteria.ibrahim ? std::min({least, slide, rolling}) : std::min(least, std::max(0.1 * least, slide));
 
   // spin of each step, and where the collision ends: at its last step or at rest
   std::vector<Vec> spin(h.a.size());
@@ -125,9 +126,12 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
       rolled |= rolls;
       largest = std::max(largest, std::fabs(2.0 * fc - fn));
       int mode = NMODES;
-      if (fn > fc) mode = NORMAL;
-      else if (criteria.ibrahim && slides) mode = SLIDING;
-      else if (criteria.ibrahim && rolls) mode = ROLLING;
+      if (fn > fc)
+        mode = NORMAL;
+      else if (criteria.ibrahim && slides)
+        mode = SLIDING;
+      else if (criteria.ibrahim && rolls)
+        mode = ROLLING;
       if (mode != NMODES) {
         out.left[i] = {k, mode};
         attached = false;
@@ -277,7 +281,8 @@ TEST(Detachment, SameGrainsAsBruteForceInTenThousandRandomCollisions)
   std::mt19937 random(1);
   const Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);    // 211 grains: four patches, one not full
   Material m = CALCITE;
-  m.gamma *= std::pow(40.0e-6 / RD, 2) * effective_radius(RP, RD) / effective_radius(RP, 40.0e-6) * 4.0;    // hold as HOLD
+  m.gamma *=
+      std::pow(40.0e-6 / RD, 2) * effective_radius(RP, RD) / effective_radius(RP, 40.0e-6) * 4.0;    // hold as HOLD
   int left = 0, normal = 0, rear = 0, at_rest = 0;
   for (int i = 0; i < 10000; i++) {
     Criteria criteria;
@@ -389,10 +394,10 @@ TEST(Detachment, RearGrainsFlyOffWithWhatFrictionLeaves)
   for (const Detachment &d : detached) {
     const Grain &g = texture.grains[functions.grain(d.bit)];
     const Vec v = {d.velocity[0], d.velocity[1], d.velocity[2]}, n = {g.n[0], g.n[1], g.n[2]};
-    EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);                         // along the surface,
-    EXPECT_LT(v.z, 0.0);                                          // towards the point of impact,
-    EXPECT_GT(size(v), needed);                                   // faster than what adhesion can hold,
-    EXPECT_LT(size(v), dv * std::sqrt(1.0 - n.z * n.z));          // slower than without friction
+    EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);                   // along the surface,
+    EXPECT_LT(v.z, 0.0);                                    // towards the point of impact,
+    EXPECT_GT(size(v), needed);                             // faster than what adhesion can hold,
+    EXPECT_LT(size(v), dv * std::sqrt(1.0 - n.z * n.z));    // slower than without friction
   }
 }
 

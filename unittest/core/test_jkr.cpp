@@ -10,10 +10,7 @@ namespace {
 
 const double ROOT = std::cbrt(6.0);
 
-double overlap(double x)
-{
-  return ROOT * (2.0 * x * x - 4.0 / 3.0 * std::sqrt(x));
-}
+double overlap(double x) { return ROOT * (2.0 * x * x - 4.0 / 3.0 * std::sqrt(x)); }
 
 // integral of F/F_c over delta/delta_c between two contact radii, in x, as the branch is vertical in delta at its end
 double work(double from, double to)

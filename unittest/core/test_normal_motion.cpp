@@ -17,15 +17,19 @@ using namespace Dust;
 namespace {
 
 constexpr double RP = 0.75e-3, RD = 10.0e-6, MASS = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0;
-const double GAMMA = surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9), MODULUS = combined_modulus(75.0e9, 0.3, 210.0e9, 0.3);
+const double GAMMA = surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9),
+             MODULUS = combined_modulus(75.0e9, 0.3, 210.0e9, 0.3);
 const double R12 = effective_radius(RP, RD), FC = pull_off_force(GAMMA, R12), HOLD = FC / MASS;
-const double A0 = equilibrium_contact_radius(GAMMA, R12, MODULUS), D0 = equilibrium_overlap(A0, R12), DC = breaking_gap(A0, R12);
+const double A0 = equilibrium_contact_radius(GAMMA, R12, MODULUS), D0 = equilibrium_overlap(A0, R12),
+             DC = breaking_gap(A0, R12);
 const double FREQUENCY = std::sqrt(1.2 * MODULUS * A0 / MASS);    // of small swings
 
 // work along the branch to its end, in F_c delta_c, from y = sqrt(a/a0)
 double work_from(double y)
 {
-  const auto w = [](double y) { return 4.0 * ROOT_6 * (0.8 * std::pow(y, 10) - 4.0 / 3.0 * std::pow(y, 7) + std::pow(y, 4) / 3.0); };
+  const auto w = [](double y) {
+    return 4.0 * ROOT_6 * (0.8 * std::pow(y, 10) - 4.0 / 3.0 * std::pow(y, 7) + std::pow(y, 4) / 3.0);
+  };
   return w(std::pow(6.0, -1.0 / 3.0)) - w(y);
 }
 
@@ -127,7 +131,8 @@ TEST(NormalMotion, SameAsAReferenceInTinySteps)
     NormalMotion motion(zeta), fine(zeta);
     double hold[NormalMotion::LANES], gap[NormalMotion::LANES], k0[NormalMotion::LANES];
     for (int k = 0; k < NormalMotion::LANES; k++) {
-      const double r = RD * (0.5 + u(random)), r12 = effective_radius(RP, r), a0 = equilibrium_contact_radius(GAMMA, r12, MODULUS);
+      const double r = RD * (0.5 + u(random)), r12 = effective_radius(RP, r),
+                   a0 = equilibrium_contact_radius(GAMMA, r12, MODULUS);
       const double mass = MASS * std::pow(r / RD, 3);
       hold[k] = pull_off_force(GAMMA, r12) / mass;
       gap[k] = breaking_gap(a0, r12);
@@ -168,8 +173,10 @@ TEST(NormalMotion, SameAsAReferenceInTinySteps)
         last = to;
       }
       (motion.attached(k) ? stay : left)++;
-      if (outermost > -1.001 && outermost < -0.95) close++;    // as little energy as that
-      else EXPECT_EQ(fine.attached(k), outermost > -1.0) << "course " << i << " grain " << k << " comes to " << outermost;
+      if (outermost > -1.001 && outermost < -0.95)
+        close++;    // as little energy as that
+      else
+        EXPECT_EQ(fine.attached(k), outermost > -1.0) << "course " << i << " grain " << k << " comes to " << outermost;
       apart += motion.attached(k) != fine.attached(k);
     }
   }

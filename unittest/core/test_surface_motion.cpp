@@ -27,7 +27,8 @@ constexpr double RP = 0.75e-3, RD = 10.0e-6, SHELL = RP + RD;
 constexpr double NO_SPIN[3] = {0.0, 0.0, 0.0};
 const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9),
                           combined_modulus(75.0e9, 0.3, 210.0e9, 0.3), 0.3, 0.15};
-const double HOLD = pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / (4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0);
+const double HOLD =
+    pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / (4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0);
 
 Vec along_surface(const Vec &v, const Vec &n) { return v - dot(v, n) * n; }
 
@@ -46,7 +47,8 @@ struct History {
 // to 1, and is followed on all the same, so that the answer tells by how much
 double largest_load(const Grain &grain, double carrier_radius, const Material &m, const History &h)
 {
-  const double mass = 4.0 / 3.0 * M_PI * std::pow(grain.radius, 3) * m.density, inertia = 0.4 * mass * grain.radius * grain.radius;
+  const double mass = 4.0 / 3.0 * M_PI * std::pow(grain.radius, 3) * m.density,
+               inertia = 0.4 * mass * grain.radius * grain.radius;
   const double r12 = effective_radius(carrier_radius, grain.radius), shell = carrier_radius + grain.radius;
   const double fc = pull_off_force(m.gamma, r12), pivot = r12 * m.rolling;
   Vec n = {grain.n[0], grain.n[1], grain.n[2]}, omega = h.spin0, w = shell * cross(omega, n), xi;
@@ -62,9 +64,11 @@ double largest_load(const Grain &grain, double carrier_radius, const Material &m
       const double fn = mass * (dot(w, w) / shell - dot(felt, n));
       most = std::max(most, fn / fc);
       if (over) return most;
-      const double stiffness = 2.0 * fc * (1.0 + std::sqrt(std::max(0.0, 1.0 - fn / fc))), limit = m.friction * std::fabs(2.0 * fc - fn);
+      const double stiffness = 2.0 * fc * (1.0 + std::sqrt(std::max(0.0, 1.0 - fn / fc))),
+                   limit = m.friction * std::fabs(2.0 * fc - fn);
       const Vec from = k == 0 ? h.spin0 : h.spin_after(k - 1), carrier = from + part * (h.spin_after(k) - from);
-      const Vec slip = w - grain.radius * cross(omega, n) - carrier_radius * cross(carrier, n), push = -mass * along_surface(a, n), resist = -stiffness * cross(n, xi);
+      const Vec slip = w - grain.radius * cross(omega, n) - carrier_radius * cross(carrier, n),
+                push = -mass * along_surface(a, n), resist = -stiffness * cross(n, xi);
       // without friction the slip of the next step would be this; friction changes it by (1/m + R^2/I) f dt
       const Vec next = slip + dt / mass * push - dt * grain.radius / inertia * cross(resist, n);
       Vec f = -1.0 / (dt * (1.0 / mass + grain.radius * grain.radius / inertia)) * next;
@@ -84,7 +88,8 @@ double largest_load(const Grain &grain, double carrier_radius, const Material &m
 // a step as Collision takes it, with the spin half a step earlier
 Motion motion_of(const History &h, size_t k)
 {
-  const Vec &a = h.a[k], alpha = 1.0 / h.dt * (h.spin[k] - (k ? h.spin[k - 1] : h.spin0)), spin = h.spin[k] - 0.5 * h.dt * alpha;
+  const Vec &a = h.a[k], alpha = 1.0 / h.dt * (h.spin[k] - (k ? h.spin[k - 1] : h.spin0)),
+            spin = h.spin[k] - 0.5 * h.dt * alpha;
   return {{a.x, a.y, a.z}, {alpha.x, alpha.y, alpha.z}, {spin.x, spin.y, spin.z}};
 }
 
@@ -253,7 +258,8 @@ TEST(SurfaceMotion, SameGrainsAsAReferenceOnACarrierThatTurns)
     while (!motion.full()) {
       const Vec n = random_direction(random);
       const Grain grain = {{n.x, n.y, n.z}, RD * (0.5 + 0.03 * motion.grains())};
-      const double hold = HOLD * effective_radius(RP, grain.radius) / effective_radius(RP, RD) * std::pow(RD / grain.radius, 3);
+      const double hold =
+          HOLD * effective_radius(RP, grain.radius) / effective_radius(RP, RD) * std::pow(RD / grain.radius, 3);
       motion.add(grain.n, hold, grain.radius, RP, &h.spin0.x);
       loads.push_back(largest_load(grain, RP, m, h));
     }
@@ -264,8 +270,10 @@ TEST(SurfaceMotion, SameGrainsAsAReferenceOnACarrierThatTurns)
     motion.release();
     for (int k = 0; k < motion.grains(); k++) {
       (motion.attached(k) ? stay : left)++;
-      if (std::fabs(loads[k] - 1.0) < 0.005) close++;
-      else EXPECT_EQ(motion.attached(k), loads[k] < 1.0) << "collision " << i << " grain " << k << " load " << loads[k];
+      if (std::fabs(loads[k] - 1.0) < 0.005)
+        close++;
+      else
+        EXPECT_EQ(motion.attached(k), loads[k] < 1.0) << "collision " << i << " grain " << k << " load " << loads[k];
     }
   }
   EXPECT_GT(left, 1000);
@@ -418,7 +426,8 @@ TEST(SurfaceMotion, GrainsDoNotDependOnTheirNeighbours)
   const History h = random_history(random, 5.0e3);
   const Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
   SurfaceMotion together(0.3, 0.15);
-  for (int k = 0; k < SurfaceMotion::LANES; k++) together.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP, &h.spin0.x);
+  for (int k = 0; k < SurfaceMotion::LANES; k++)
+    together.add(texture.grains[k].n, HOLD * (1.0 + k), RD / (1.0 + k), RP, &h.spin0.x);
   EXPECT_TRUE(together.full());
   for (size_t k = 0; k < h.a.size(); k++) together.advance(&h.a[k].x, &h.spin[k].x, h.dt);
   for (int k = 0; k < SurfaceMotion::LANES; k++) {
@@ -499,7 +508,9 @@ TEST(SurfaceMotion, ACarrierSpunUpThrowsGrainsOffItsEquatorOnly)
 TEST(SurfaceMotion, DoesNotDependOnTheAxes)
 {
   std::mt19937 random(8);
-  const auto turned = [](const Vec &v) { return Vec{0.36 * v.x + 0.48 * v.y - 0.8 * v.z, -0.8 * v.x + 0.6 * v.y, 0.48 * v.x + 0.64 * v.y + 0.6 * v.z}; };
+  const auto turned = [](const Vec &v) {
+    return Vec{0.36 * v.x + 0.48 * v.y - 0.8 * v.z, -0.8 * v.x + 0.6 * v.y, 0.48 * v.x + 0.64 * v.y + 0.6 * v.z};
+  };
   for (int i = 0; i < 20; i++) {
     const History h = random_history(random, 5.0e3);
     SurfaceMotion one(0.3, 0.15), other(0.3, 0.15);
@@ -566,7 +577,9 @@ TEST(ImpulseRecord, KeepsSumsInBoundedMemory)
     ImpulseRecord other;
     other.unpack(buf.data(), buf.size());
     ASSERT_EQ(other.spans().size(), record.spans().size());
-    EXPECT_EQ(std::memcmp(other.spans().data(), record.spans().data(), record.spans().size() * sizeof(ImpulseRecord::Span)), 0);
+    EXPECT_EQ(std::memcmp(other.spans().data(), record.spans().data(),
+                          record.spans().size() * sizeof(ImpulseRecord::Span)),
+              0);
     for (const auto &span : record.spans()) {
       impulse = impulse - Vec{span.impulse[0], span.impulse[1], span.impulse[2]};
       turn = turn - Vec{span.turn[0], span.turn[1], span.turn[2]};
@@ -676,7 +689,10 @@ TEST(MotionBound, NeverSparesAGrainThatRingsOff)
 {
   // an undamped contact under loads that swing at its frequency; spared where they change by 0.95 F_c, thrown off by far more
   const double gap = 2.267e-10, mass = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0, n[3] = {0.0, 0.0, 1.0};
-  const double period = 2.0 * M_PI / std::sqrt(1.2 * CALCITE.modulus * equilibrium_contact_radius(CALCITE.gamma, effective_radius(RP, RD), CALCITE.modulus) / mass);
+  const double period =
+      2.0 * M_PI /
+      std::sqrt(1.2 * CALCITE.modulus *
+                equilibrium_contact_radius(CALCITE.gamma, effective_radius(RP, RD), CALCITE.modulus) / mass);
   int spared = 0, thrown = 0;
   for (int swings = 1; swings <= ImpulseRecord::MOST / 2; swings++)
     for (double strength = 0.0; strength < 0.5; strength += 0.01) {

@@ -16,10 +16,7 @@ namespace {
 
 constexpr double RP = 0.75e-3, RD = 10.0e-6;
 
-double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // smallest gap between two grains, by comparing all pairs
 double least_gap(const Texture &t)
@@ -141,7 +138,8 @@ TEST(Texture, DenseMonolayersUpToJamming)
 
 TEST(Texture, FewLargeGrains)
 {
-  const Texture t = place_monolayer(1.0, 0.5, 0.25, BareCap(), 5);    // four grains: the grid of the sphere at its coarsest
+  const Texture t =
+      place_monolayer(1.0, 0.5, 0.25, BareCap(), 5);    // four grains: the grid of the sphere at its coarsest
   EXPECT_EQ(t.grains.size(), 4u);
   EXPECT_GT(least_gap(t), 0.0);
 }
@@ -174,7 +172,8 @@ TEST(Texture, CommentsAndCarriageOfNumbers)
 
 TEST(Texture, QuantilesOfSizeDistributions)
 {
-  const SizeDistribution lognormal = {SizeDistribution::LOGNORMAL, 15e-6, 1.5}, rrsb = {SizeDistribution::RRSB, 15e-6, 2.0};
+  const SizeDistribution lognormal = {SizeDistribution::LOGNORMAL, 15e-6, 1.5},
+                         rrsb = {SizeDistribution::RRSB, 15e-6, 2.0};
   EXPECT_NEAR(lognormal.quantile(0.5), 15e-6, 1e-18);
   EXPECT_NEAR(lognormal.quantile(0.5 * std::erfc(-1.0 / std::sqrt(2.0))), 1.5 * 15e-6, 1e-17);    // one deviation above
   EXPECT_NEAR(rrsb.quantile(0.5), 15e-6, 1e-18);
@@ -210,8 +209,9 @@ TEST(Texture, DistributedSizesAreTheOnesAskedFor)
     for (const double d : x) squares += std::pow(d, 6);
     const auto wanted = [&](double d) {
       const double ln = std::log(d / sizes.x50);
-      const double whole = sizes.kind == SizeDistribution::RRSB ? 1.0 - std::exp(-std::log(2.0) * std::exp(sizes.spread * ln))
-                                                                : 0.5 * std::erfc(-ln / std::log(sizes.spread) / std::sqrt(2.0));
+      const double whole = sizes.kind == SizeDistribution::RRSB
+                               ? 1.0 - std::exp(-std::log(2.0) * std::exp(sizes.spread * ln))
+                               : 0.5 * std::erfc(-ln / std::log(sizes.spread) / std::sqrt(2.0));
       return (whole - 0.01) / 0.98;
     };
     for (const double d : x) {
@@ -235,7 +235,8 @@ TEST(Texture, DenseAndImpossibleDistributions)
     return "no error";
   };
   EXPECT_NE(error(sizes, 0.9).find("monolayer is full at"), std::string::npos);
-  EXPECT_NE(error({SizeDistribution::LOGNORMAL, 15e-6, 1.0}, 0.2).find("geometric standard deviation 1"), std::string::npos);
+  EXPECT_NE(error({SizeDistribution::LOGNORMAL, 15e-6, 1.0}, 0.2).find("geometric standard deviation 1"),
+            std::string::npos);
   EXPECT_NE(error({SizeDistribution::RRSB, 15e-6, 0.0}, 0.2).find("exponent 0"), std::string::npos);
   EXPECT_NE(error({SizeDistribution::RRSB, 0.0, 3.0}, 0.2).find("median diameter 0"), std::string::npos);
   EXPECT_NE(error({SizeDistribution::LOGNORMAL, 1e-3, 2.0}, 0.2).find("carrier"), std::string::npos);

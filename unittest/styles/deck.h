@@ -57,16 +57,20 @@ class Deck {
   // an empty box above a wall at z = 0, steel carriers of the reference case
   void box(const std::string &atom_style = "sphere")
   {
-    (*this)("units si\natom_style " + atom_style + "\nboundary p p f\nnewton off\ncomm_modify vel yes\n"
+    (*this)("units si\natom_style " + atom_style +
+            "\nboundary p p f\nnewton off\ncomm_modify vel yes\n"
             "region box block -0.01 0.01 -0.01 0.01 -0.002 0.01\ncreate_box 2 box\ntimestep 1e-9\nneighbor 3e-4 bin\n"
-            "pair_style granular\npair_coeff * * " + contact(0.7) + "\n");
+            "pair_style granular\npair_coeff * * " +
+            contact(0.7) + "\n");
   }
   void carrier(double x, double y, double z, double vx, double vy, double vz)
   {
     char line[256];
     const int id = static_cast<int>(lammps_get_natoms(lmp)) + 1;
-    std::snprintf(line, sizeof(line), "create_atoms 1 single %.17g %.17g %.17g\nset atom %d diameter 1.5e-3 density 7700\n"
-                  "group new id %d\nvelocity new set %.17g %.17g %.17g\ngroup new delete", x, y, z, id, id, vx, vy, vz);
+    std::snprintf(line, sizeof(line),
+                  "create_atoms 1 single %.17g %.17g %.17g\nset atom %d diameter 1.5e-3 density 7700\n"
+                  "group new id %d\nvelocity new set %.17g %.17g %.17g\ngroup new delete",
+                  x, y, z, id, id, vx, vy, vz);
     (*this)(line);
   }
   void wall_and_motion(double restitution = 0.7)

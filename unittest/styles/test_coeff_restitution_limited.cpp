@@ -34,11 +34,15 @@ TEST(CoeffRestitutionLimited, RealisedOnAWall)
   for (double e : {0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
     const std::string value = std::to_string(e);
     double pull;
-    EXPECT_NEAR(wall_impact("hertz/material 210e9 " + value + " 0.3 tangential mindlin NULL 0.0 0.05 damping coeff_restitution/limited", 5.0,
-                            2e-9, &pull), e, 0.005 * e);
+    EXPECT_NEAR(wall_impact("hertz/material 210e9 " + value +
+                                " 0.3 tangential mindlin NULL 0.0 0.05 damping coeff_restitution/limited",
+                            5.0, 2e-9, &pull),
+                e, 0.005 * e);
     EXPECT_GE(pull, 0.0);
-    EXPECT_NEAR(wall_impact("hooke 1e7 " + value + " tangential linear_nohistory 0.0 0.05 damping coeff_restitution/limited", 5.0, 2e-9,
-                            &pull), e, 0.005 * e);
+    EXPECT_NEAR(wall_impact("hooke 1e7 " + value +
+                                " tangential linear_nohistory 0.0 0.05 damping coeff_restitution/limited",
+                            5.0, 2e-9, &pull),
+                e, 0.005 * e);
     EXPECT_GE(pull, 0.0);
   }
   EXPECT_NEAR(wall_impact(contact(0.6), 0.1, 5e-9), 0.6, 0.005 * 0.6);
@@ -70,7 +74,8 @@ TEST(CoeffRestitutionLimited, FrictionEndsWithTheNormalForce)
   Deck deck;
   deck.box();
   deck.carrier(0.0, 0.0, 0.7501e-3, 4.0, 0.0, -7.0);
-  deck("fix move all nve/sphere\nfix wall all wall/gran granular " + contact(0.5, 0.3) + " zplane 0.0 NULL\nrun 0 post no");
+  deck("fix move all nve/sphere\nfix wall all wall/gran granular " + contact(0.5, 0.3) +
+       " zplane 0.0 NULL\nrun 0 post no");
   int in_contact = 0;
   for (int k = 0; k < 6000; k++) {
     deck("run 1 pre no post no");

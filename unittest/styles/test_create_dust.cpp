@@ -22,9 +22,11 @@ std::string adhesion()
   char text[1024];
   const double young = 2.0 * 0.91 * MODULUS, mass = 4.0 / 3.0 * M_PI * 1e-15 * 2700.0;
   const double eta = 2.0 * std::sqrt(1.2 * MODULUS * A0 / mass) / A0;
-  const char *rest = "0.3 %.17g 0.4e-9 tangential mindlin NULL 0.0 0.3 damping viscoelastic rolling dominik/tielens 0.15\n";
+  const char *rest =
+      "0.3 %.17g 0.4e-9 tangential mindlin NULL 0.0 0.3 damping viscoelastic rolling dominik/tielens 0.15\n";
   std::string line = "pair_coeff 1 1 " + contact(0.7) + "\n";
-  std::snprintf(text, sizeof(text), (std::string("pair_coeff 1 2 jkr/vdw %.17g %.17g ") + rest).c_str(), young, eta, HAMAKER);
+  std::snprintf(text, sizeof(text), (std::string("pair_coeff 1 2 jkr/vdw %.17g %.17g ") + rest).c_str(), young, eta,
+                HAMAKER);
   line += text;
   std::snprintf(text, sizeof(text), (std::string("pair_coeff 2 2 jkr/vdw 75e9 %.17g ") + rest).c_str(), eta, 10.1e-20);
   return line + text;
@@ -37,9 +39,11 @@ void dusty_carriers(Deck &deck, int n, const char *more = "", const char *omega 
        "region box block -0.004 0.004 -0.002 0.002 -0.002 0.004\ncreate_box 2 box\n"
        "neighbor 15e-6 multi\ncomm_modify mode multi vel yes\nneigh_modify one 10000 page 200000\ntimestep 1e-9");
   for (int k = 0; k < n; k++) deck.carrier(-0.0025 + 0.0025 * k, 0.0, 0.001, 0.1, 0.0, -0.2 * k);
-  deck("group carriers type 1\nset group carriers omega " + std::string(omega) + "\n"
-       "create_dust carriers type 2 texture monolayer 20e-6 coverage 0.01 seed 3 " + std::string(more) +
-       "\ngroup grains type 2\npair_style granular\n" + adhesion() + "fix move all nve/sphere\ncompute tied grains dust/carrier carriers\n"
+  deck("group carriers type 1\nset group carriers omega " + std::string(omega) +
+       "\n"
+       "create_dust carriers type 2 texture monolayer 20e-6 coverage 0.01 seed 3 " +
+       std::string(more) + "\ngroup grains type 2\npair_style granular\n" + adhesion() +
+       "fix move all nve/sphere\ncompute tied grains dust/carrier carriers\n"
        "thermo_style custom step c_tied\nrun 0 post no");
 }
 
@@ -165,11 +169,14 @@ TEST(CreateDust, GrainsTurnWithTheirCarrierUntilItThrowsThemOff)
       surely += share > 1.02;
       hardly += share > 1.0;
     }
-    deck("run 3000 post no");    // others have slid by a few um at most, and a force just above the limit takes its time
+    deck(
+        "run 3000 post no");    // others have slid by a few um at most, and a force just above the limit takes its time
     EXPECT_GE(225.0 - tied(deck), surely);
     EXPECT_LE(225.0 - tied(deck), hardly);
-    if (spin < 13.2e3) EXPECT_EQ(hardly, 0);
-    else EXPECT_GT(surely, 50);
+    if (spin < 13.2e3)
+      EXPECT_EQ(hardly, 0);
+    else
+      EXPECT_GT(surely, 50);
   }
 }
 
@@ -192,14 +199,16 @@ TEST(CreateDust, ComputeKnowsWhichCarrierHoldsAGrain)
   const int *tag = static_cast<int *>(lammps_extract_atom(deck.lmp, "id"));
   ASSERT_NE(label, nullptr);
   for (int i = 0; i < static_cast<int>(lammps_get_natoms(deck.lmp)); i++) {
-    ASSERT_EQ(label[i], tag[i] <= 3 ? 0.0 : 1.0 + (tag[i] - 4) / 225) << tag[i];    // carriers are not in the group of the grains
+    ASSERT_EQ(label[i], tag[i] <= 3 ? 0.0 : 1.0 + (tag[i] - 4) / 225)
+        << tag[i];    // carriers are not in the group of the grains
   }
   EXPECT_EQ(tied(deck), 675.0);
   // a grain pulled off is tied to nothing, one that holds on to another grain is tied to that one's carrier
   const double *x = deck.atom("x", 10), *xp = deck.atom("x", 1);
   char move[256];
   const double reach = (0.76e-3 + 20e-6 - Dust::equilibrium_overlap(A0, R12)) / 0.76e-3;
-  std::snprintf(move, sizeof(move), "set atom 11 x %.17g y %.17g z %.17g\nset atom 12 z 0.0035\nset atom 11 omega 0 0 0",
+  std::snprintf(move, sizeof(move),
+                "set atom 11 x %.17g y %.17g z %.17g\nset atom 12 z 0.0035\nset atom 11 omega 0 0 0",
                 xp[0] + reach * (x[0] - xp[0]), xp[1] + reach * (x[1] - xp[1]), xp[2] + reach * (x[2] - xp[2]));
   deck(std::string(move) + "\nvelocity all set 0 0 0\nset group all omega 0 0 0\nrun 5 post no");
   EXPECT_EQ(tied(deck), 674.0);
@@ -210,7 +219,8 @@ TEST(CreateDust, GrainsInFlightStayAndLeaveTheirCarrierAlone)
   // oblique, so that coordinates round differently at each step; 100,000 steps are twice an impact
   Deck deck;
   dusty_carriers(deck, 1);
-  deck("velocity all set 5 3 8\nset group all omega 0 0 0\nneighbor 15e-6 bin\ncomm_modify mode single\nrun 100000 post no");
+  deck("velocity all set 5 3 8\nset group all omega 0 0 0\nneighbor 15e-6 bin\ncomm_modify mode single\nrun 100000 "
+       "post no");
   EXPECT_EQ(tied(deck), 225.0);
   const double *v = deck.atom("v", 1), start[3] = {5.0, 3.0, 8.0};
   for (int d = 0; d < 3; d++) EXPECT_NEAR(v[d], start[d], 1e-9 * std::sqrt(98.0));
@@ -231,7 +241,8 @@ TEST(ComputeDustCarrier, SaysWhenContactsWithCarriersLastChanged)
     const double n[3] = {(x[0] - xp[0]) / 0.76e-3, (x[1] - xp[1]) / 0.76e-3, (x[2] - xp[2]) / 0.76e-3};
     const double size = std::hypot(n[0], n[1]);
     const double v[3] = {along ? n[1] / size : n[0], along ? -n[0] / size : n[1], along ? 0.0 : n[2]};
-    deck(line("group one id %.0f\nvelocity one set %.17g %.17g %.17g\ngroup one delete", grain, speed * v[0], speed * v[1], speed * v[2]));
+    deck(line("group one id %.0f\nvelocity one set %.17g %.17g %.17g\ngroup one delete", grain, speed * v[0],
+              speed * v[1], speed * v[2]));
   };
   // along the surface at 2 m/s: friction is at its limit soon, the pivot gives way after 1.5 um
   push(20, true, 2.0);
@@ -255,7 +266,8 @@ TEST(ComputeDustCarrier, WhatGrainsDoAmongThemselvesDoesNotCount)
 {
   Deck deck;
   dusty_carriers(deck, 1);
-  deck("velocity all set 0 0 0\nset group all omega 0 0 0\nset atom 40 x 0.002 y 0 z 0.003\nset atom 41 x 0.00202001 y 0 z 0.003\n"
+  deck("velocity all set 0 0 0\nset group all omega 0 0 0\nset atom 40 x 0.002 y 0 z 0.003\nset atom 41 x 0.00202001 y "
+       "0 z 0.003\n"
        "run 100 post no\nset atom 41 x 0.00201999 omega 0 0 5e4\nrun 200 post no");
   EXPECT_EQ(last_change(deck, 0), 1.0);
   EXPECT_EQ(last_change(deck, 1), -1.0);
@@ -269,8 +281,10 @@ TEST(CreateDust, SortingAtomsChangesNothing)
   const auto run = [](const char *sorting, double *omega) {
     Deck deck;
     dusty_carriers(deck, 3);
-    deck("atom_modify sort 0 0\nvelocity all set 0 0 0\nset group carriers omega 0 0 0\nset group grains omega 2e3 -1e3 5e2\n"
-         "neigh_modify every 200 delay 0 check no\nrun 500\n" + std::string(sorting) + "\nrun 500 post no");    // sorts when a run starts
+    deck("atom_modify sort 0 0\nvelocity all set 0 0 0\nset group carriers omega 0 0 0\nset group grains omega 2e3 "
+         "-1e3 5e2\n"
+         "neigh_modify every 200 delay 0 check no\nrun 500\n" +
+         std::string(sorting) + "\nrun 500 post no");    // sorts when a run starts
     for (int grain = 4; grain < 4 + 675; grain++)
       for (int d = 0; d < 3; d++) *omega++ = deck.atom("omega", grain)[d];
     return tied(deck);
@@ -302,7 +316,8 @@ TEST(CreateDust, WrongInputIsNamed)
   EXPECT_NE(error("carriers type 3 " + ok).find("type 3"), std::string::npos);
   EXPECT_NE(error("carriers type 2 density 2700").find("texture"), std::string::npos);
   EXPECT_NE(error("carriers type 2 " + ok + " friction 0.3").find("friction"), std::string::npos);
-  EXPECT_NE(error("carriers type 2 texture monolayer 20e-6 coverage 0.7 seed 1").find("coverage 0.7"), std::string::npos);
+  EXPECT_NE(error("carriers type 2 texture monolayer 20e-6 coverage 0.7 seed 1").find("coverage 0.7"),
+            std::string::npos);
 }
 
 int main(int argc, char **argv)

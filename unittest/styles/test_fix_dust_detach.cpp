@@ -33,7 +33,8 @@ std::vector<double> impact(const std::string &options = "", double vx = 0.0, dou
 
 TEST(FixDustDetach, OutputsAgreeWithEachOther)
 {
-  for (const char *options : {"", "criteria ibrahim", "tangential frictionless", "tangential integrate", "tangential off"}) {
+  for (const char *options :
+       {"", "criteria ibrahim", "tangential frictionless", "tangential integrate", "tangential off"}) {
     const std::vector<double> v = impact(options);
     EXPECT_EQ(v[1], 4500.0);
     EXPECT_EQ(v[2], v[1] - v[3] - v[4] - v[12] - v[13]);
@@ -56,7 +57,8 @@ TEST(FixDustDetach, OutputsAgreeWithEachOther)
   EXPECT_GT(impact("tangential integrate rolling 0", 0.0, -12.0)[4], impact("tangential integrate", 0.0, -12.0)[4]);
   EXPECT_EQ(impact("rolling 0.5"), impact());
   EXPECT_EQ(impact()[12] + impact()[13], 0.0);
-  EXPECT_GT(impact("criteria ibrahim")[12] + impact("criteria ibrahim")[13], 3000.0);    // the rest lifts off in the first steps
+  EXPECT_GT(impact("criteria ibrahim")[12] + impact("criteria ibrahim")[13],
+            3000.0);    // the rest lifts off in the first steps
   // what is counted does not depend on the criteria that detach; at 8 m/s all but grains at the poles slide and roll
   EXPECT_GT(impact()[10], 4000.0);
   EXPECT_GE(impact()[11], impact()[10]);
@@ -66,7 +68,8 @@ TEST(FixDustDetach, ContactTimeAndPeakAcceleration)
 {
   // Hertz without damping: contact time 2.9432 overlap/speed, peak force k overlap^1.5, with overlap = (5 m v^2/(4 k))^0.4
   const double v = 3.0, R = 0.75e-3, m = 4.0 / 3.0 * M_PI * R * R * R * 7700.0;
-  const double k = 4.0 / 3.0 * 210e9 / (2.0 * (1.0 - 0.09)) * std::sqrt(R), overlap = std::pow(1.25 * m * v * v / k, 0.4);
+  const double k = 4.0 / 3.0 * 210e9 / (2.0 * (1.0 - 0.09)) * std::sqrt(R),
+               overlap = std::pow(1.25 * m * v * v / k, 0.4);
   Deck deck;
   deck.box();
   deck.carrier(0.0, 0.0, START, 0.0, 0.0, -v);
@@ -87,7 +90,8 @@ TEST(FixDustDetach, SetupCountsNoStep)
   deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
   deck.wall_and_motion();
   dust(deck);
-  for (int steps : {0, 1, 0, 700, 0, 0, 300, 1, 1, 997, 1000, 0, 1000}) deck("run " + std::to_string(steps) + " post no");
+  for (int steps : {0, 1, 0, 700, 0, 0, 300, 1, 1, 997, 1000, 0, 1000})
+    deck("run " + std::to_string(steps) + " post no");
   EXPECT_EQ(deck.vector(), once);
 
   // looking at it changes nothing either
@@ -103,7 +107,8 @@ TEST(FixDustDetach, SetupCountsNoStep)
 TEST(FixDustDetach, AHundredCarriersAreAsAHundredSingleOnes)
 {
   const auto carrier = [](Deck &deck, int k) {
-    deck.carrier(-0.009 + 0.002 * (k % 10), -0.009 + 0.002 * (k / 10), START + 1e-8 * k, 0.1 * (k % 7), 0.05 * (k % 3), -0.2 * (k + 1));
+    deck.carrier(-0.009 + 0.002 * (k % 10), -0.009 + 0.002 * (k / 10), START + 1e-8 * k, 0.1 * (k % 7), 0.05 * (k % 3),
+                 -0.2 * (k + 1));
   };
   Deck many;
   many.box();
@@ -128,7 +133,10 @@ TEST(FixDustDetach, AHundredCarriersAreAsAHundredSingleOnes)
 
 TEST(FixDustDetach, RestartInTheMiddleOfACollisionIsExact)
 {
-  for (const auto &[at, options] : {std::make_pair(500, "every 2000"), {1000, "every 2000"}, {1500, "every 2000"}, {2500, "every 2000"},
+  for (const auto &[at, options] : {std::make_pair(500, "every 2000"),
+                                    {1000, "every 2000"},
+                                    {1500, "every 2000"},
+                                    {2500, "every 2000"},
                                     {1500, "every 2000 tangential integrate"}}) {
     Deck whole;
     whole.box();
@@ -141,7 +149,8 @@ TEST(FixDustDetach, RestartInTheMiddleOfACollisionIsExact)
 
     Deck rest;
     // a restored pair style granular does not know its cutoff (LAMMPS): it is given again
-    rest("read_restart " + file + "\ncomm_modify vel yes\ntimestep 1e-9\nneighbor 3e-4 bin\npair_style granular\npair_coeff * * " +
+    rest("read_restart " + file +
+         "\ncomm_modify vel yes\ntimestep 1e-9\nneighbor 3e-4 bin\npair_style granular\npair_coeff * * " +
          contact(0.7));
     rest.wall_and_motion();
     dust(rest, options);
@@ -212,27 +221,33 @@ TEST(FixDustDetach, EachUnitStyleGivesTheSameGrains)
     const char *style;
     double length, mass, time;
   };
-  const Units all[] = {{"cgs", 1e2, 1e3, 1.0}, {"micro", 1e6, 1e15, 1e6}, {"nano", 1e9, 1e21, 1e9}, {"lj", 3.0, 7.0, 11.0}};
+  const Units all[] = {{"cgs", 1e2, 1e3, 1.0},
+                       {"micro", 1e6, 1e15, 1e6},
+                       {"nano", 1e9, 1e21, 1e9},
+                       {"lj", 3.0, 7.0, 11.0}};
   for (const Units &u : all) {
     Deck deck;
     char text[4096];
     const double L = u.length, radius = 0.75e-3 * L, speed = 8.0 * L / u.time;
-    const double density = u.mass / (L * L * L), pressure = u.mass / (L * u.time * u.time), energy = pressure * L * L * L;
-    std::snprintf(text, sizeof(text),
-                  "units %s\natom_style sphere\nboundary p p f\nnewton off\ncomm_modify vel yes\n"
-                  "region box block %.15g %.15g %.15g %.15g %.15g %.15g\ncreate_box 1 box\ntimestep %.15g\nneighbor %.15g bin\n"
-                  "create_atoms 1 single 0 0 %.15g\nset atom 1 diameter %.15g density %.15g\nvelocity all set 0 0 %.15g\n"
-                  "pair_style zero %.15g\npair_coeff * *\nfix move all nve/sphere\n",
-                  u.style, -0.01 * L, 0.01 * L, -0.01 * L, 0.01 * L, -0.002 * L, 0.01 * L, 1e-9 * u.time, 3e-4 * L, START * L,
-                  2.0 * radius, 7700.0 * density, -speed, 2.0 * radius);
+    const double density = u.mass / (L * L * L), pressure = u.mass / (L * u.time * u.time),
+                 energy = pressure * L * L * L;
+    std::snprintf(
+        text, sizeof(text),
+        "units %s\natom_style sphere\nboundary p p f\nnewton off\ncomm_modify vel yes\n"
+        "region box block %.15g %.15g %.15g %.15g %.15g %.15g\ncreate_box 1 box\ntimestep %.15g\nneighbor %.15g bin\n"
+        "create_atoms 1 single 0 0 %.15g\nset atom 1 diameter %.15g density %.15g\nvelocity all set 0 0 %.15g\n"
+        "pair_style zero %.15g\npair_coeff * *\nfix move all nve/sphere\n",
+        u.style, -0.01 * L, 0.01 * L, -0.01 * L, 0.01 * L, -0.002 * L, 0.01 * L, 1e-9 * u.time, 3e-4 * L, START * L,
+        2.0 * radius, 7700.0 * density, -speed, 2.0 * radius);
     deck(text);
-    std::snprintf(text, sizeof(text),
-                  "fix wall all wall/gran granular hertz/material %.15g 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping "
-                  "coeff_restitution/limited zplane 0.0 NULL\n"
-                  "fix dust all dust/detach texture monolayer %.15g coverage 0.2 seed 1 density %.15g hamaker %.15g %.15g "
-                  "elastic %.15g 0.3 %.15g 0.3 friction 0.3 tangential integrate\nrun 4000 post no",
-                  210e9 * pressure, 20e-6 * L, 2700.0 * density, std::sqrt(10.1e-20 * 21.2e-20) * energy, 0.4e-9 * L,
-                  75e9 * pressure, 210e9 * pressure);
+    std::snprintf(
+        text, sizeof(text),
+        "fix wall all wall/gran granular hertz/material %.15g 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping "
+        "coeff_restitution/limited zplane 0.0 NULL\n"
+        "fix dust all dust/detach texture monolayer %.15g coverage 0.2 seed 1 density %.15g hamaker %.15g %.15g "
+        "elastic %.15g 0.3 %.15g 0.3 friction 0.3 tangential integrate\nrun 4000 post no",
+        210e9 * pressure, 20e-6 * L, 2700.0 * density, std::sqrt(10.1e-20 * 21.2e-20) * energy, 0.4e-9 * L,
+        75e9 * pressure, 210e9 * pressure);
     deck(text);
     const std::vector<double> v = deck.vector();
     for (int n : {1, 9}) EXPECT_EQ(v[n], si[n]) << u.style;
@@ -247,11 +262,13 @@ TEST(FixDustDetach, UnitsThatDoNotFitTogetherAreRefused)
   for (const char *style : {"real", "metal", "electron"}) {
     Deck deck;
     deck(std::string("units ") + style + "\natom_style sphere\nregion box block -9 9 -9 9 -9 9\ncreate_box 1 box");
-    EXPECT_NE(deck.attempt("fix dust all dust/detach " + REFERENCE_DUST).find(std::string("units ") + style), std::string::npos);
+    EXPECT_NE(deck.attempt("fix dust all dust/detach " + REFERENCE_DUST).find(std::string("units ") + style),
+              std::string::npos);
   }
   Deck deck;
   deck("units cgs\natom_style sphere\nregion box block -9 9 -9 9 -9 9\ncreate_box 1 box");
-  EXPECT_NE(deck.attempt("fix dust all dust/detach " + REFERENCE_DUST).find("density"), std::string::npos);    // no default
+  EXPECT_NE(deck.attempt("fix dust all dust/detach " + REFERENCE_DUST).find("density"),
+            std::string::npos);    // no default
 }
 
 TEST(FixDustDetach, RegionWallsAndPlaneWalls)
@@ -261,7 +278,8 @@ TEST(FixDustDetach, RegionWallsAndPlaneWalls)
   deck.box();
   deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
   deck("region above block INF INF INF INF 0.0 INF side in\nfix move all nve/sphere\n"
-       "fix wall all wall/gran/region granular " + contact(0.7) + " region above");
+       "fix wall all wall/gran/region granular " +
+       contact(0.7) + " region above");
   dust(deck);
   deck("run 4000 post no");
   const std::vector<double> region = deck.vector();
@@ -299,8 +317,10 @@ TEST(FixDustDetach, OrderOfFixesIsChecked)
   EXPECT_NE(error(move + dust + wall).find("floor"), std::string::npos);
   EXPECT_NE(error(move + wall + gravity + dust).find("down"), std::string::npos);
   EXPECT_NE(error(move + wall + drag + dust).find("air"), std::string::npos);
-  EXPECT_NE(error("region above block INF INF INF INF 0.0 INF\n" + move + dust + "fix funnel all wall/gran/region granular " +
-                  contact(0.7) + " region above\n").find("funnel"), std::string::npos);
+  EXPECT_NE(error("region above block INF INF INF INF 0.0 INF\n" + move + dust +
+                  "fix funnel all wall/gran/region granular " + contact(0.7) + " region above\n")
+                .find("funnel"),
+            std::string::npos);
   // two textures in one run: neither is in the other's way
   EXPECT_EQ(error(move + wall + dust + "fix other all dust/detach texture monolayer 30e-6 coverage 0.1 seed 4\n"), "");
 }
@@ -386,9 +406,12 @@ TEST(FixDustDetach, CarriersInsertedAndDeletedDuringTheRun)
   Deck deck;
   deck.box();
   deck("region top block -0.008 0.008 -0.008 0.008 0.002 0.009\ngroup carriers type 2\nfix move all nve/sphere\n"
-       "fix wall all wall/gran granular " + contact(0.7) + " zplane 0.0 NULL");
-  EXPECT_NE(deck.attempt("fix dust carriers dust/detach " + REFERENCE_DUST + "\nrun 0").find("no carriers"), std::string::npos);
-  deck("unfix dust\ntimestep 1e-7\nfix dust carriers dust/detach " + REFERENCE_DUST + "\nfix down all gravity 9.81 vector 0 0 -1\n"
+       "fix wall all wall/gran granular " +
+       contact(0.7) + " zplane 0.0 NULL");
+  EXPECT_NE(deck.attempt("fix dust carriers dust/detach " + REFERENCE_DUST + "\nrun 0").find("no carriers"),
+            std::string::npos);
+  deck("unfix dust\ntimestep 1e-7\nfix dust carriers dust/detach " + REFERENCE_DUST +
+       "\nfix down all gravity 9.81 vector 0 0 -1\n"
        "fix rain carriers pour 6 2 4711 region top diam one 1.5e-3 dens 7700 7700 vel 0 0 0 0 -6\nrun 0 post no");
   EXPECT_EQ(deck.global(0), 0.0);
   EXPECT_EQ(deck.global(1), 0.0);
@@ -430,7 +453,8 @@ TEST(FixDustDetach, GroupsSortingAndClear)
   for (int round = 0; round < 2; round++) {
     deck.box();
     deck("atom_modify sort 7 0.001");
-    for (int k = 0; k < 5; k++) deck.carrier(-0.008 + 0.004 * k, -0.003 * k, START, 0.0, 0.0, k == 3 ? -8.0 : -1.0 * (k + 1));
+    for (int k = 0; k < 5; k++)
+      deck.carrier(-0.008 + 0.004 * k, -0.003 * k, START, 0.0, 0.0, k == 3 ? -8.0 : -1.0 * (k + 1));
     deck("group dusty id 4\nneigh_modify every 1 delay 0 check no");
     deck.wall_and_motion();
     dust(deck, "", "dusty");
@@ -532,7 +556,8 @@ TEST(FixDustDetach, GrainsOfDistributedSizes)
     return deck.vector();
   };
   // the same as from a file; large grains leave first: F_c/m_d falls with the square of their size
-  const std::vector<double> v = slow("monolayer 1 coverage 0.2 seed 1 distribution lognormal 15e-6 1.5 write dust_sizes.txt");
+  const std::vector<double> v =
+      slow("monolayer 1 coverage 0.2 seed 1 distribution lognormal 15e-6 1.5 write dust_sizes.txt");
   EXPECT_EQ(slow("file dust_sizes.txt"), v);
   EXPECT_GT(v[7] / v[8], 1.2 * (v[1] - v[2]) / v[1]);
 }

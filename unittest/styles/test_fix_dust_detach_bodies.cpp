@@ -89,7 +89,8 @@ TEST(FixDustDetachBodies, OrientationFollowsTheSpin)
     deck.carrier(0, 0, RADIUS + v * wait, 0, 0, -v);
     spin(deck, 1, turns * 2.0 * M_PI / wait, 0, 0);
     // a wall without friction: the spin does not change
-    deck("fix move all nve/sphere\nfix wall all wall/gran granular hertz/material 210e9 0.7 0.3 tangential linear_nohistory 0.0 0.0 "
+    deck("fix move all nve/sphere\nfix wall all wall/gran granular hertz/material 210e9 0.7 0.3 tangential "
+         "linear_nohistory 0.0 0.0 "
          "damping coeff_restitution/limited zplane 0.0 NULL\ntimestep 5e-9");
     dust(deck, std::string("bare 1.2 rotation ") + (rotation ? "yes" : "no"));
     deck("run 402000 post no");
@@ -112,7 +113,8 @@ TEST(FixDustDetachBodies, HeadOnCollisionIsTheImpactOnARigidWall)
       Deck wall;
       wall.box();
       wall.carrier(0, 0, 0.7501e-3, 0, 0, -v);
-      wall("fix move all nve/sphere\nfix wall all wall/gran granular hertz/material 420e9 0.7 0.3 tangential linear_nohistory 0.0 0.0 "
+      wall("fix move all nve/sphere\nfix wall all wall/gran granular hertz/material 420e9 0.7 0.3 tangential "
+           "linear_nohistory 0.0 0.0 "
            "damping coeff_restitution/limited zplane 0.0 NULL");
       dust(wall, std::string("tangential ") + tangential);
       wall("run 5000 post no");
@@ -133,7 +135,8 @@ TEST(FixDustDetachBodies, HeadOnCollisionIsTheImpactOnARigidWall)
       EXPECT_NEAR(pair.columns(1)[3], wall.columns(1)[3], 1.1e-9);
       EXPECT_NEAR(pair.columns(1)[4], wall.columns(1)[4], 1e-6 * wall.columns(1)[4]);
       // another texture's side: its own scatter
-      EXPECT_NEAR(*static_cast<double *>(lammps_extract_variable(pair.lmp, "other", nullptr)), wall.global(0), 0.015) << v;
+      EXPECT_NEAR(*static_cast<double *>(lammps_extract_variable(pair.lmp, "other", nullptr)), wall.global(0), 0.015)
+          << v;
     }
 }
 
@@ -154,7 +157,9 @@ TEST(FixDustDetachBodies, TurningEverythingChangesNothing)
     spin(deck, 2, w2[0], w2[1], w2[2]);
     deck("pair_coeff * * " + contact(0.7, 0.4) + "\nfix move all nve/sphere");
     // a file of which the grains are turned
-    std::string text = "# dust texture 1\ncarrier_diameter 1.5e-3\nbare 0.3 " + line("%.17g %.17g %.17g", axis[0] / size(axis), axis[1] / size(axis), axis[2] / size(axis)) + "\ngrains 300\n";
+    std::string text = "# dust texture 1\ncarrier_diameter 1.5e-3\nbare 0.3 " +
+                       line("%.17g %.17g %.17g", axis[0] / size(axis), axis[1] / size(axis), axis[2] / size(axis)) +
+                       "\ngrains 300\n";
     for (int k = 0; k < 300; k++) {    // a spiral from pole to pole, along the axis that is not bare
       const double z = 1.0 - 1.9 * (k + 0.5) / 300, phi = 2.399963 * k, s = std::sqrt(1.0 - z * z);
       const Vec e = {0.2 / size({0.2, 0.3, -0.93}), 0.3 / size({0.2, 0.3, -0.93}), -0.93 / size({0.2, 0.3, -0.93})};
@@ -171,7 +176,8 @@ TEST(FixDustDetachBodies, TurningEverythingChangesNothing)
     std::FILE *file = std::fopen("dust_turned.txt", "w");
     std::fputs((text + "end\n").c_str(), file);
     std::fclose(file);
-    deck(std::string("fix dust all dust/detach texture file dust_turned.txt tangential ") + tangential + "\nrun 6000 post no");
+    deck(std::string("fix dust all dust/detach texture file dust_turned.txt tangential ") + tangential +
+         "\nrun 6000 post no");
     std::remove("dust_turned.txt");
     return deck.vector();
   };
@@ -195,11 +201,13 @@ TEST(FixDustDetachBodies, StiffenUndoesSoftContacts)
     for (double S : {1.0, 10.0, 100.0, 1000.0}) {
       Deck deck;
       deck.box();
-      const double vx = c.v * std::cos(c.angle * M_PI / 180.0), vz = c.v * std::sin(c.angle * M_PI / 180.0), longer = std::pow(S, 0.4);
-      const std::string soft = "hertz/material " + std::to_string(210e9 / S) + " 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping coeff_restitution/limited";
+      const double vx = c.v * std::cos(c.angle * M_PI / 180.0), vz = c.v * std::sin(c.angle * M_PI / 180.0),
+                   longer = std::pow(S, 0.4);
+      const std::string soft = "hertz/material " + std::to_string(210e9 / S) +
+                               " 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping coeff_restitution/limited";
       deck.carrier(0, 0, 0.7501e-3, vx, 0, -vz);
-      deck("pair_coeff * * " + soft + "\nfix move all nve/sphere\nfix wall all wall/gran granular " + soft + " zplane 0.0 NULL" +
-           line("\ntimestep %g", 1e-9 * longer));
+      deck("pair_coeff * * " + soft + "\nfix move all nve/sphere\nfix wall all wall/gran granular " + soft +
+           " zplane 0.0 NULL" + line("\ntimestep %g", 1e-9 * longer));
       dust(deck, "stiffen " + std::to_string(S));
       deck("run 6000 post no");
       EXPECT_EQ(deck.global(9), 1.0);
@@ -218,10 +226,12 @@ TEST(FixDustDetachBodies, ACarrierAtRestLosesNothingUntilItIsHit)
 {
   Deck deck;
   deck.box();
-  const std::string soft = "hertz/material 2.1e8 0.3 0.3 tangential mindlin NULL 0.0 0.3 damping coeff_restitution/limited";
+  const std::string soft =
+      "hertz/material 2.1e8 0.3 0.3 tangential mindlin NULL 0.0 0.3 damping coeff_restitution/limited";
   deck.carrier(0, 0, RADIUS, 0, 0, 0);
   deck.carrier(0, 0, 3.0 * RADIUS, 0, 0, 0);
-  deck("pair_coeff * * " + soft + "\nfix move all nve/sphere\nfix wall all wall/gran granular " + soft + " zplane 0.0 NULL\ntimestep 2e-7");
+  deck("pair_coeff * * " + soft + "\nfix move all nve/sphere\nfix wall all wall/gran granular " + soft +
+       " zplane 0.0 NULL\ntimestep 2e-7");
   dust(deck, "stiffen 1000 orientation random 3");
   deck("fix weight all gravity 9.81 vector 0 0 -1\nrun 40000 post no");
   EXPECT_EQ(deck.global(0), 0.0);
@@ -285,14 +295,17 @@ TEST(FixDustDetachBodies, MassAndMomentumOfWhatComesOff)
 TEST(FixDustDetachBodies, EmittedGrainsKeepMassAndMomentum)
 {
   Deck deck;
-  space(deck, 0.002);    // tight: bins are as small as grains
+  space(deck, 0.002);                                // tight: bins are as small as grains
   deck.carrier(0, 0.4e-3, 0.6346e-3, 0, 0, -9.0);    // 0.15 um apart
   deck.carrier(0, -0.4e-3, -0.6346e-3, 1, 0, 7.0);
-  deck("group carriers id 1 2\nneighbor 2e-5 multi\ncomm_modify mode multi vel yes\nneigh_modify every 1 delay 0 check yes one 20000 page 400000\n"
+  deck("group carriers id 1 2\nneighbor 2e-5 multi\ncomm_modify mode multi vel yes\nneigh_modify every 1 delay 0 check "
+       "yes one 20000 page 400000\n"
        "atom_modify sort 0 0");
   // grains touch nothing here: contacts of type 2 are as soft as can be
-  deck("pair_coeff 1 2 hertz/material 1.0 0.5 0.3 tangential linear_nohistory 0.0 0.0 damping coeff_restitution/limited\n"
-       "pair_coeff 2 2 hertz/material 1.0 0.5 0.3 tangential linear_nohistory 0.0 0.0 damping coeff_restitution/limited\nfix move all nve/sphere");
+  deck("pair_coeff 1 2 hertz/material 1.0 0.5 0.3 tangential linear_nohistory 0.0 0.0 damping "
+       "coeff_restitution/limited\n"
+       "pair_coeff 2 2 hertz/material 1.0 0.5 0.3 tangential linear_nohistory 0.0 0.0 damping "
+       "coeff_restitution/limited\nfix move all nve/sphere");
   deck("fix dust carriers dust/detach texture monolayer 20e-6 coverage 0.03 seed 1 emit 2 orientation random 4");
   deck(BALANCE);
   const auto value = [&](const char *name) { return variable(deck, name); };

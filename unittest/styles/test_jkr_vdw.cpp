@@ -31,7 +31,9 @@ struct Grain {
 
 std::string model(const Grain &g, const std::string &rolling = "", double eta = 0.0)
 {
-  return line("jkr/vdw 1.1053e11 %.17g 0.3 %.17g %.17g damping viscoelastic tangential mindlin NULL 0.0 0.3 ", eta, HAMAKER, g.z0) + rolling;
+  return line("jkr/vdw 1.1053e11 %.17g 0.3 %.17g %.17g damping viscoelastic tangential mindlin NULL 0.0 0.3 ", eta,
+              HAMAKER, g.z0) +
+         rolling;
 }
 
 // a grain above a wall at z = 0, its centre at radius + gap
@@ -40,7 +42,8 @@ void grain_on_wall(Deck &deck, const Grain &g, double gap, const std::string &wa
   deck("units si\natom_style sphere\nboundary p p f\nnewton off\ncomm_modify vel yes\n"
        "region box block -1e-4 1e-4 -1e-4 1e-4 -1e-4 1e-4\ncreate_box 1 box\nneighbor 1e-5 bin\npair_style granular");
   deck("pair_coeff * * " + model(g));
-  deck(line("create_atoms 1 single 0 0 %.17g\nset atom 1 diameter %.17g density 2700\nvelocity all set 0 0 %.17g\ntimestep %.17g",
+  deck(line("create_atoms 1 single 0 0 %.17g\nset atom 1 diameter %.17g density 2700\nvelocity all set 0 0 "
+            "%.17g\ntimestep %.17g",
             g.radius + gap, 2.0 * g.radius, vz, timestep));
   deck(wall);
 }
@@ -52,7 +55,8 @@ std::string plane_wall(const std::string &model)
 
 std::string region_wall(const std::string &model)
 {
-  return "region above block INF INF INF INF 0.0 INF\nfix wall all wall/gran/region granular " + model + " region above";
+  return "region above block INF INF INF INF 0.0 INF\nfix wall all wall/gran/region granular " + model +
+         " region above";
 }
 
 // force of the wall on a grain that is moved down to an overlap and up again at constant speed; by gap
@@ -90,7 +94,8 @@ TEST(JkrVdw, ForceOnApproachInContactAndOnPullOff)
     for (size_t k = 0; k < curve.size(); k++) {
       const auto [gap, force] = curve[k];
       const bool neck = k <= turn ? gap <= 0.0 : -gap > -g.delta_c;
-      if (std::fabs(gap - (k <= turn ? 0.0 : g.delta_c)) < 1e-15) continue;    // within round-off of the step where it forms or breaks
+      if (std::fabs(gap - (k <= turn ? 0.0 : g.delta_c)) < 1e-15)
+        continue;    // within round-off of the step where it forms or breaks
       const double expected = neck ? g.branch(-gap) : -g.attraction(std::max(gap, 0.0));
       ASSERT_NEAR(force, expected, 1e-5 * g.fc) << "gap " << gap;    // round-off of the position, 1e-6 of delta_c
       broken |= k > turn && !neck;
@@ -177,7 +182,8 @@ TEST(JkrVdw, RollingResistance)
   // a grain that turns without moving: xi = R omega t, moment 4 F_c xi at the equilibrium overlap up to R theta_crit
   const Grain g(10e-6, 0.4e-9);
   const double theta_crit = 0.15, spin = 1e5;
-  for (const std::string &wall : {plane_wall(model(g, "rolling dominik/tielens 0.15")), region_wall(model(g, "rolling dominik/tielens 0.15"))}) {
+  for (const std::string &wall :
+       {plane_wall(model(g, "rolling dominik/tielens 0.15")), region_wall(model(g, "rolling dominik/tielens 0.15"))}) {
     Deck deck;
     grain_on_wall(deck, g, -g.delta_0, wall, 1e-9, 0.0);
     deck(line("set atom 1 omega 0 %.17g 0\nfix move all nve/noforce\nrun 0 post no", spin));
@@ -236,7 +242,8 @@ TEST(JkrVdw, EndOfTheAttractionIsACoefficient)
     deck("fix move all nve/noforce\nrun 0 post no");
     return deck.atom("f", 1)[2];
   };
-  const std::string coefficients = line("1.1053e11 0 0.3 %.17g 4e-10", HAMAKER), rest = " damping viscoelastic tangential mindlin NULL 0.0 0.3";
+  const std::string coefficients = line("1.1053e11 0 0.3 %.17g 4e-10", HAMAKER),
+                    rest = " damping viscoelastic tangential mindlin NULL 0.0 0.3";
   const auto with = [&](const char *end) { return "jkr/vdw/cut " + coefficients + " " + end + rest; };
   for (double gap : {-1e-9, -0.2e-9, 0.1e-9, 3.5e-9, 3.599e-9, 3.601e-9})
     EXPECT_EQ(force(gap, with("4e-9")), force(gap, "jkr/vdw " + coefficients + rest)) << gap;
@@ -260,7 +267,8 @@ TEST(JkrVdw, WarnsOnceWhereABounceWouldGainEnergy)
     deck("fix move all nve/noforce\nrun 3 post no\nrun 3 post no\nlog none");
     std::ifstream file("dust_warnings.txt");
     int found = 0;
-    for (std::string text; std::getline(file, text);) found += text.find("WARNING") != std::string::npos && text.find("gains energy") != std::string::npos;
+    for (std::string text; std::getline(file, text);)
+      found += text.find("WARNING") != std::string::npos && text.find("gains energy") != std::string::npos;
     std::remove("dust_warnings.txt");
     return found;
   };
@@ -284,9 +292,12 @@ TEST(JkrVdw, WrongInputIsNamed)
   EXPECT_NE(error("jkr/vdw 1e11 0 0.3 0 4e-10" + rest).find("A 0"), std::string::npos);
   EXPECT_NE(error("jkr/vdw 1e11 0 0.3 1e-19 0" + rest).find("z0 0"), std::string::npos);
   EXPECT_NE(error("jkr/vdw/cut 1e11 0 0.3 1e-19 4e-10 4e-10" + rest).find("z_cut 4e-10"), std::string::npos);
-  EXPECT_NE(error("jkr/vdw 1e11 0 0.3 1e-19 4e-10 rolling dominik/tielens 0" + rest).find("theta_crit"), std::string::npos);
-  EXPECT_NE(error("hertz/material 1e11 0.5 0.3 rolling dominik/tielens 0.15" + rest).find("jkr/vdw"), std::string::npos);
-  EXPECT_NE(error("jkr/vdw 1e11 0.5 0.3 1e-19 4e-10 damping coeff_restitution/limited tangential mindlin NULL 0.0 0.3"), "");
+  EXPECT_NE(error("jkr/vdw 1e11 0 0.3 1e-19 4e-10 rolling dominik/tielens 0" + rest).find("theta_crit"),
+            std::string::npos);
+  EXPECT_NE(error("hertz/material 1e11 0.5 0.3 rolling dominik/tielens 0.15" + rest).find("jkr/vdw"),
+            std::string::npos);
+  EXPECT_NE(error("jkr/vdw 1e11 0.5 0.3 1e-19 4e-10 damping coeff_restitution/limited tangential mindlin NULL 0.0 0.3"),
+            "");
 }
 
 int main(int argc, char **argv)

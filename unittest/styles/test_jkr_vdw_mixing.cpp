@@ -13,12 +13,15 @@ constexpr double RADIUS = 10e-6, Z0 = 0.4e-9;
 const std::string REST = " damping viscoelastic tangential mindlin NULL 0.0 0.3";
 
 // two grains of types 1 and 2 at a gap, that keep their velocities
-std::string two_grains(Deck &deck, double gap, const std::string &coefficients, const std::string &skin = "1e-6", double slide = 0.0)
+std::string two_grains(Deck &deck, double gap, const std::string &coefficients, const std::string &skin = "1e-6",
+                       double slide = 0.0)
 {
   deck("units si\natom_style sphere\natom_modify map array\nboundary p p p\nnewton off\ncomm_modify vel yes\n"
-       "region box block -1e-4 1e-4 -1e-4 1e-4 -1e-4 1e-4\ncreate_box 2 box\nneighbor " + skin + " bin\ntimestep 1e-9");
+       "region box block -1e-4 1e-4 -1e-4 1e-4 -1e-4 1e-4\ncreate_box 2 box\nneighbor " +
+       skin + " bin\ntimestep 1e-9");
   deck(line("create_atoms 1 single 0 0 0\ncreate_atoms 2 single 0 0 %.17g\nset group all diameter %.17g density 2700\n"
-            "group second type 2\nvelocity second set %.17g 0 0\nfix move all nve/noforce", 2.0 * RADIUS + gap, 2.0 * RADIUS, slide));
+            "group second type 2\nvelocity second set %.17g 0 0\nfix move all nve/noforce",
+            2.0 * RADIUS + gap, 2.0 * RADIUS, slide));
   return deck.attempt("pair_style granular\n" + coefficients + "\nrun 0 post no");
 }
 
@@ -38,10 +41,12 @@ TEST(JkrVdwMixing, BothModuliOfTheTwoMaterials)
 {
   for (const double nu : {0.3, 0.45, 0.1}) {
     const double e1 = 210e9, e2 = 5e9, nu1 = 0.3, a = std::sqrt(21.2e-20 * 10.1e-20);
-    const double modulus = Dust::combined_modulus(e1, nu1, e2, nu), gamma = Dust::surface_energy(a, Z0), r12 = RADIUS / 2.0;
+    const double modulus = Dust::combined_modulus(e1, nu1, e2, nu), gamma = Dust::surface_energy(a, Z0),
+                 r12 = RADIUS / 2.0;
     const double fc = Dust::pull_off_force(gamma, r12), a0 = Dust::equilibrium_contact_radius(gamma, r12, modulus);
     const double overlap = 2.0 * Dust::equilibrium_overlap(a0, r12), speed = 1e-3;
-    const std::string coefficients = "pair_coeff 1 1 " + own(e1, 0.0, nu1, 21.2e-20) + "\npair_coeff 2 2 " + own(e2, 0.0, nu, 10.1e-20);
+    const std::string coefficients =
+        "pair_coeff 1 1 " + own(e1, 0.0, nu1, 21.2e-20) + "\npair_coeff 2 2 " + own(e2, 0.0, nu, 10.1e-20);
     Deck deck;
     ASSERT_EQ(two_grains(deck, -overlap, coefficients, "1e-6", speed), "");
     const double x = Dust::jkr_contact_radius(overlap / Dust::breaking_gap(a0, r12));
@@ -58,7 +63,8 @@ TEST(JkrVdwMixing, DampingIsTheGeometricMean)
   Deck mixed, given;
   const double v = 0.1;
   for (Deck *deck : {&mixed, &given}) {
-    const std::string coefficients = deck == &mixed ? "pair_coeff 1 1 " + own(75e9, 4e13, 0.3, 1e-19) + "\npair_coeff 2 2 " + own(75e9, 9e13, 0.3, 1e-19)
+    const std::string coefficients = deck == &mixed ? "pair_coeff 1 1 " + own(75e9, 4e13, 0.3, 1e-19) +
+                                                          "\npair_coeff 2 2 " + own(75e9, 9e13, 0.3, 1e-19)
                                                     : "pair_coeff * * " + own(75e9, 6e13, 0.3, 1e-19);
     ASSERT_EQ(two_grains(*deck, -1e-9, coefficients), "");
     (*deck)(line("velocity second set 0 0 %.17g\nrun 0 post no", v));
@@ -72,20 +78,28 @@ TEST(JkrVdwMixing, DampingIsTheGeometricMean)
 TEST(JkrVdwMixing, UnlikeDistancesAreRefused)
 {
   Deck least, end, both;
-  const std::string z0 = two_grains(least, 1e-9, "pair_coeff 1 1 " + own(75e9, 0, 0.3, 1e-19, 0.4e-9) + "\npair_coeff 2 2 " + own(75e9, 0, 0.3, 1e-19, 0.3e-9));
+  const std::string z0 = two_grains(least, 1e-9,
+                                    "pair_coeff 1 1 " + own(75e9, 0, 0.3, 1e-19, 0.4e-9) + "\npair_coeff 2 2 " +
+                                        own(75e9, 0, 0.3, 1e-19, 0.3e-9));
   EXPECT_NE(z0.find("z0 4e-10 and 3e-10"), std::string::npos) << z0;
-  const std::string cut = two_grains(end, 1e-9, "pair_coeff 1 1 jkr/vdw/cut 75e9 0 0.3 1e-19 4e-10 4e-9" + REST +
-                                                    "\npair_coeff 2 2 jkr/vdw/cut 75e9 0 0.3 1e-19 4e-10 6e-9" + REST);
+  const std::string cut = two_grains(end, 1e-9,
+                                     "pair_coeff 1 1 jkr/vdw/cut 75e9 0 0.3 1e-19 4e-10 4e-9" + REST +
+                                         "\npair_coeff 2 2 jkr/vdw/cut 75e9 0 0.3 1e-19 4e-10 6e-9" + REST);
   EXPECT_NE(cut.find("z_cut 4e-09 and 6e-09"), std::string::npos) << cut;
-  EXPECT_EQ(two_grains(both, 1e-9, "pair_coeff 1 1 jkr/vdw/cut 75e9 0 0.3 1e-19 4e-10 4e-9" + REST +
-                                       "\npair_coeff 2 2 jkr/vdw/cut 75e9 0 0.3 2e-19 4e-10 4e-9" + REST), "");
+  EXPECT_EQ(two_grains(both, 1e-9,
+                       "pair_coeff 1 1 jkr/vdw/cut 75e9 0 0.3 1e-19 4e-10 4e-9" + REST +
+                           "\npair_coeff 2 2 jkr/vdw/cut 75e9 0 0.3 2e-19 4e-10 4e-9" + REST),
+            "");
 }
 
 TEST(JkrVdwMixing, RangeInPairs)
 {
   const auto force = [](double gap, const std::string &model) {
     Deck deck;
-    EXPECT_EQ(two_grains(deck, gap, "pair_coeff * * " + model + " 75e9 0 0.3 1e-19 4e-10" + (model == "jkr/vdw" ? "" : " 20e-9") + REST), "");
+    EXPECT_EQ(two_grains(deck, gap,
+                         "pair_coeff * * " + model + " 75e9 0 0.3 1e-19 4e-10" + (model == "jkr/vdw" ? "" : " 20e-9") +
+                             REST),
+              "");
     return deck.atom("f", 1)[2];
   };
   const auto attraction = [](double gap) { return Dust::hamaker_force(1e-19, Z0, RADIUS / 2.0, gap); };
@@ -100,7 +114,8 @@ TEST(JkrVdwMixing, SkinBelowTheRange)
   // 4Jul2026 adds the range to the lists; 4Feb2025 does not, and a skin that is too small is refused
   Deck deck;
   const std::string message = two_grains(deck, 3.5e-9, "pair_coeff * * " + own(75e9, 0, 0.3, 1e-19), "3e-9");
-  if (LAMMPS_VERSION_NUMBER < 20260000) EXPECT_NE(message.find("skin of at least"), std::string::npos) << message;
+  if (LAMMPS_VERSION_NUMBER < 20260000)
+    EXPECT_NE(message.find("skin of at least"), std::string::npos) << message;
   else {
     EXPECT_EQ(message, "");
     EXPECT_GT(deck.atom("f", 1)[2], 0.0);
@@ -115,8 +130,9 @@ TEST(JkrVdwMixing, DampingThatActsWithoutANeckIsRefused)
   for (const char *damping : {"velocity", "mass_velocity"}) {
     Deck deck;
     deck.box();
-    const std::string error = deck.attempt("pair_coeff 1 1 jkr/vdw 75e9 0 0.3 10.1e-20 0.4e-9 tangential mindlin NULL 0.0 0.3 damping " +
-                                           std::string(damping) + "\npair_coeff 1 2 " + contact(0.7) + "\nrun 0 post no");
+    const std::string error =
+        deck.attempt("pair_coeff 1 1 jkr/vdw 75e9 0 0.3 10.1e-20 0.4e-9 tangential mindlin NULL 0.0 0.3 damping " +
+                     std::string(damping) + "\npair_coeff 1 2 " + contact(0.7) + "\nrun 0 post no");
     EXPECT_NE(error.find("cannot use damping " + std::string(damping)), std::string::npos) << error;
   }
 }

@@ -22,7 +22,8 @@ Vec cross(const Vec &a, const Vec &b)
 double length(const Vec &a) { return std::sqrt(dot(a, a)); }
 
 // from sphere 1 to sphere 2, and two directions across it
-const Vec N = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}, T1 = {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0}, T2 = {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0};
+const Vec N = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}, T1 = {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0},
+          T2 = {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0};
 
 const double HAMAKER = 14.633e-20, Z0 = 0.4e-9, YOUNG = 1.1053e11, NU = 0.3, DENSITY = 2700.0;
 const double CARRIER = 0.75e-3;
@@ -68,7 +69,8 @@ struct Contact {
 std::string model(double mu, double theta_crit, double eta = 0.0)
 {
   return line("jkr/vdw 1.1053e11 %.17g 0.3 14.633e-20 0.4e-9 damping viscoelastic tangential mindlin NULL 0.0 %.17g "
-              "rolling dominik/tielens %.17g", eta, mu, theta_crit);
+              "rolling dominik/tielens %.17g",
+              eta, mu, theta_crit);
 }
 
 std::string triple(const Vec &a) { return line("%.17g %.17g %.17g", a[0], a[1], a[2]); }
@@ -84,10 +86,7 @@ void place(Deck &deck, int id, const Vec &x)
   deck(line("set atom %.17g x %.17g y %.17g z %.17g", id, x[0], x[1], x[2]));
 }
 
-void spin(Deck &deck, int id, const Vec &omega)
-{
-  deck(line("set atom %g", id) + " omega " + triple(omega));
-}
+void spin(Deck &deck, int id, const Vec &omega) { deck(line("set atom %g", id) + " omega " + triple(omega)); }
 
 void move(Deck &deck, int id, const Vec &v)
 {
@@ -99,11 +98,13 @@ void two_spheres(Deck &deck, const Contact &c, double overlap, const std::string
 {
   const double box = 3.0 * (c.r1 + c.r2);
   deck("units si\natom_style sphere\nboundary f f f\nnewton off\ncomm_modify vel yes\nregion box block " +
-       line("%g %g %g %g ", -box, box, -box, box) + line("%g %g\ncreate_box 1 box\nneighbor %g bin\n", -box, box, 0.1 * box) +
+       line("%g %g %g %g ", -box, box, -box, box) +
+       line("%g %g\ncreate_box 1 box\nneighbor %g bin\n", -box, box, 0.1 * box) +
        "pair_style granular\npair_coeff * * " + model);
   const double start = neck ? std::max(overlap, c.delta_0) : overlap;
   deck("create_atoms 1 single 0 0 0\ncreate_atoms 1 single " + triple((c.r1 + c.r2 - start) * N));
-  deck(line("set atom 1 diameter %.17g density %.17g\nset atom 2 diameter %.17g density %.17g\n", 2.0 * c.r1, DENSITY, 2.0 * c.r2, DENSITY) +
+  deck(line("set atom 1 diameter %.17g density %.17g\nset atom 2 diameter %.17g density %.17g\n", 2.0 * c.r1, DENSITY,
+            2.0 * c.r2, DENSITY) +
        line("timestep %.17g", timestep));
   if (!neck) return;
   deck("fix move all nve/noforce\nrun 1 post no\nunfix move");
@@ -116,7 +117,10 @@ Vec normal(const Deck &deck)
   return 1.0 / length(apart) * apart;
 }
 
-double overlap(const Deck &deck, const Contact &c) { return c.r1 + c.r2 - length(get(deck, "x", 2) - get(deck, "x", 1)); }
+double overlap(const Deck &deck, const Contact &c)
+{
+  return c.r1 + c.r2 - length(get(deck, "x", 2) - get(deck, "x", 1));
+}
 
 // of both spheres about the origin
 Vec angular_momentum(const Deck &deck, const Contact &c)
@@ -265,7 +269,8 @@ TEST(JkrVdwPairs, MomentumAndAngularMomentumAreConserved)
     const Vec change = c.inertia(2) * (get(deck, "omega", 2) - spin_before);
     EXPECT_GT(length(change), 0.1 * c.inertia(2) * length(spin_before));
     expect_near(angular_momentum(deck, c), before, 1e-10 * length(change), "angular momentum");
-    expect_near(c.mass(1) * get(deck, "v", 1) + c.mass(2) * get(deck, "v", 2), momentum, 1e-12 * length(momentum), "momentum");
+    expect_near(c.mass(1) * get(deck, "v", 1) + c.mass(2) * get(deck, "v", 2), momentum, 1e-12 * length(momentum),
+                "momentum");
   }
 }
 
@@ -293,7 +298,8 @@ TEST(JkrVdwPairs, SlidingStartsAtTheLimit)
       EXPECT_EQ(slides, 100);
       // friction acts in the middle of the overlap, on both in the same sense
       for (int id : {1, 2})
-        expect_near(get(deck, "torque", id), -((id == 1 ? r1 : r2) - 0.5 * held) * limit * cross(T1, N), 2e-3 * (id == 1 ? r1 : r2) * limit, "torque");
+        expect_near(get(deck, "torque", id), -((id == 1 ? r1 : r2) - 0.5 * held) * limit * cross(T1, N),
+                    2e-3 * (id == 1 ? r1 : r2) * limit, "torque");
     }
   }
 }
@@ -405,7 +411,8 @@ TEST(JkrVdwPairs, EnergyOfRollingOscillations)
   for (const Case &test : {Case{10e-6, 1000, 12}, Case{8e-6, 50, 60}}) {
     const Contact c(10e-6, test.r2);
     const double sliding = 8.0 * YOUNG / (4.0 * (2.0 - NU) * (1.0 + NU)) * c.a0, rolling = 4.0 * c.fc * c.r;
-    const double period = 2.0 * M_PI / std::sqrt(rolling * (1.0 / c.inertia(1) + 1.0 / c.inertia(2))), dt = c.period() / test.steps;
+    const double period = 2.0 * M_PI / std::sqrt(rolling * (1.0 / c.inertia(1) + 1.0 / c.inertia(2))),
+                 dt = c.period() / test.steps;
     Deck deck;
     two_spheres(deck, c, c.delta_0, model(1e3, 0.15), dt, false);
     roll(deck, c, 0.01 * 2.0 * M_PI / period * T1);
@@ -415,13 +422,14 @@ TEST(JkrVdwPairs, EnergyOfRollingOscillations)
       double energy = c.energy(overlap(deck, c)) - c.energy(c.delta_0);
       for (int id : {1, 2})
         energy += 0.5 * c.mass(id) * dot(get(deck, "v", id), get(deck, "v", id)) +
-            0.5 * c.inertia(id) * dot(get(deck, "omega", id), get(deck, "omega", id));
+                  0.5 * c.inertia(id) * dot(get(deck, "omega", id), get(deck, "omega", id));
       if (k == 0) first = energy;
       const Vec n = normal(deck), f = get(deck, "f", 1), friction = f - dot(f, n) * n;
       const Vec torque = get(deck, "torque", 1) - (c.r1 - 0.5 * overlap(deck, c)) * cross(n, friction);
       const double stored = dot(torque, torque) / (2.0 * rolling);
       most = std::max(most, stored);
-      ASSERT_NEAR(energy + stored + dot(friction, friction) / (2.0 * sliding), first, 1e-4 * first) << test.r2 << " " << k;
+      ASSERT_NEAR(energy + stored + dot(friction, friction) / (2.0 * sliding), first, 1e-4 * first)
+          << test.r2 << " " << k;
       deck(line("run %g pre no post no", std::round(1.03 * period / dt)));    // passes all phases
     }
     EXPECT_GT(most, 0.5 * first);
@@ -459,14 +467,17 @@ Cluster evolve(Cluster cluster, const Setting &setting, double time)
   const int n = static_cast<int>(cluster.size());
   const auto id = [&](int k) { return setting.reversed ? n - k : k + 1; };
   Deck deck;
-  deck("units si\natom_style sphere\nboundary p p p\ncomm_modify vel yes\natom_modify sort 0 0\nnewton " + std::string(setting.newton ? "on" : "off") +
-       "\nregion box block 0 8e-3 0 8e-3 0 8e-3\ncreate_box 2 box\nneighbor 1e-4 bin\npair_style granular\npair_coeff 1 1 " + contact(0.7) +
-       "\npair_coeff * 2 " + model(0.3, 0.05, 1e14) + setting.option);
+  deck("units si\natom_style sphere\nboundary p p p\ncomm_modify vel yes\natom_modify sort 0 0\nnewton " +
+       std::string(setting.newton ? "on" : "off") +
+       "\nregion box block 0 8e-3 0 8e-3 0 8e-3\ncreate_box 2 box\nneighbor 1e-4 bin\npair_style granular\npair_coeff "
+       "1 1 " +
+       contact(0.7) + "\npair_coeff * 2 " + model(0.3, 0.05, 1e14) + setting.option);
   for (int made = 1; made <= n; made++) {
     const Sphere &s = cluster[setting.reversed ? n - made : made - 1];
     Vec x = s.x + setting.shift;
     for (double &coordinate : x) coordinate -= BOX * std::floor(coordinate / BOX);
-    deck(line("create_atoms %g single ", s.type) + triple(x) + line("\nset atom %g diameter %.17g density %.17g", made, 2.0 * s.radius, DENSITY));
+    deck(line("create_atoms %g single ", s.type) + triple(x) +
+         line("\nset atom %g diameter %.17g density %.17g", made, 2.0 * s.radius, DENSITY));
     spin(deck, made, s.omega);
     move(deck, made, s.v);
   }
@@ -547,7 +558,8 @@ TEST(JkrVdwPairs, TrajectoryDoesNotDependOnNewtonOrderOrPlace)
     for (const Vec &shift : {Vec{}, corner})
       for (const auto &[reversed, resorted] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
         // the same but for round-off, or a shift's round-off of 5e-19 m, which grows to 1e-8
-        EXPECT_LT(difference(end, evolve(start, {newton, reversed, resorted, shift, 2e-9, ""}, 10e-6)), shift[0] > 0.0 ? 1e-6 : 1e-12)
+        EXPECT_LT(difference(end, evolve(start, {newton, reversed, resorted, shift, 2e-9, ""}, 10e-6)),
+                  shift[0] > 0.0 ? 1e-6 : 1e-12)
             << newton << reversed << resorted << shift[0];
       }
 }
