@@ -40,17 +40,7 @@ void CreateDust::command(int narg, char **arg)
   if (!atom->tag_enable || !atom->omega_flag) error->all(FLERR, "Create_dust needs atoms with IDs and spin");
 
   DustOptions options(lmp, "Create_dust");
-  for (int iarg = 3; iarg < narg;) {
-    const int next = options.parse(iarg, narg, arg);
-    if (next == iarg)
-      error->all(FLERR,
-                 "Unknown create_dust keyword {}: use texture, bare, distribution, density, hamaker, surface, elastic, "
-                 "orientation or "
-                 "write",
-                 arg[iarg]);
-    iarg = next;
-  }
-  options.complete();
+  options.read(3, narg, arg);
 
   const double carrier_radius = options.carrier_radius(igroup);
   if (carrier_radius == 0.0) error->all(FLERR, "Create_dust group {} has no carriers", arg[0]);

@@ -23,7 +23,7 @@ namespace LAMMPS_NS {
 
 class CreateDust : public Command {
  public:
-  CreateDust(class LAMMPS *lmp) : Command(lmp) {}
+  CreateDust(class LAMMPS *_lmp) : Command(_lmp) {}
   void command(int, char **) override;
 
  private:

@@ -27,8 +27,8 @@ static constexpr double UNSET = -1.0;
 
 /* ---------------------------------------------------------------------- */
 
-DustOptions::DustOptions(LAMMPS *lmp, const std::string &command) :
-    Pointers(lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, command(command),
+DustOptions::DustOptions(LAMMPS *_lmp, const std::string &_command) :
+    Pointers(_lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, command(_command),
     diameter(0.0), coverage(UNSET), distributed(false), sizes{}, seed(0), bare_given(false), orientation_seed(0)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
@@ -44,154 +44,94 @@ DustOptions::DustOptions(LAMMPS *lmp, const std::string &command) :
 
 /* ---------------------------------------------------------------------- */
 
-void DustOptions::need(int iarg, int n, int narg, char **arg) const
+std::vector<Keyword> DustOptions::keywords()
 {
-  if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("{} {}", command, arg[iarg]), error);
-}
-
-double DustOptions::number(int iarg, int k, char **arg) const
-{
-  check(iarg, k, arg, utils::is_double(arg[iarg + k]), "a number");
-  return utils::numeric(FLERR, arg[iarg + k], false, lmp);
-}
-
-int DustOptions::whole_number(int iarg, int k, char **arg) const
-{
-  check(iarg, k, arg, utils::is_integer(arg[iarg + k]), "a whole number");
-  return utils::inumeric(FLERR, arg[iarg + k], false, lmp);
-}
-
-void DustOptions::check(int iarg, int k, char **arg, bool ok, const char *range) const
-{
-  if (!ok) error->all(FLERR, "{} {} value {} must be {}", command, arg[iarg], arg[iarg + k], range);
-}
-
-double DustOptions::positive(int iarg, int k, char **arg) const
-{
-  const double value = number(iarg, k, arg);
-  check(iarg, k, arg, value > 0.0 && std::isfinite(value), "above 0");
-  return value;
-}
-
-int DustOptions::parse(int iarg, int narg, char **arg)
-{
-  const std::string key = arg[iarg];
-  if (key == "texture") return parse_texture(iarg, narg, arg);
-  if (key == "bare") {
-    need(iarg, 1, narg, arg);
-    bare.half_angle = number(iarg, 1, arg);
-    check(iarg, 1, arg, bare.half_angle >= 0.0 && bare.half_angle < 3.14159265358979, "at least 0 and below pi");
-    bare_given = true;
-    if (iarg + 2 >= narg || !utils::is_double(arg[iarg + 2])) return iarg + 2;
-    need(iarg, 4, narg, arg);
-    double *axis = bare.axis;
-    for (int d = 0; d < 3; d++) axis[d] = number(iarg, d + 2, arg);
-    const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-    if (!(length > 0.0 && std::isfinite(length))) error->all(FLERR, "{} bare axis must not be 0 0 0", command);
-    for (int d = 0; d < 3; d++) axis[d] /= length;
-    return iarg + 5;
-  }
-  if (key == "density") {
-    need(iarg, 1, narg, arg);
-    density = positive(iarg, 1, arg);
-    return iarg + 2;
-  }
-  if ((key == "hamaker" || key == "surface") && surface_energy != UNSET)
-    error->all(FLERR, "{} {}: the adhesion is given twice", command, key);
-  if (key == "hamaker") {
-    need(iarg, 2, narg, arg);
-    surface_energy = Dust::surface_energy(positive(iarg, 1, arg), positive(iarg, 2, arg));
-    return iarg + 3;
-  }
-  if (key == "surface") {
-    need(iarg, 1, narg, arg);
-    surface_energy = positive(iarg, 1, arg);
-    return iarg + 2;
-  }
-  if (key == "elastic") {
-    need(iarg, 4, narg, arg);
-    for (int k = 0; k < 4; k += 2) {
-      elastic[k] = positive(iarg, k + 1, arg);
-      elastic[k + 1] = number(iarg, k + 2, arg);
-      check(iarg, k + 2, arg, elastic[k + 1] > -1.0 && elastic[k + 1] <= 0.5, "above -1 and at most 0.5");
-    }
-    return iarg + 5;
-  }
-  if (key == "write") {
-    need(iarg, 1, narg, arg);
-    write = arg[iarg + 1];
-    return iarg + 2;
-  }
-  if (key == "orientation") {
-    need(iarg, 1, narg, arg);
-    const std::string value = arg[iarg + 1];
-    check(iarg, 1, arg, value == "same" || value == "random", "same or random SEED");
-    orientation_seed = 0;
-    if (value == "same") return iarg + 2;
-    need(iarg, 2, narg, arg);
-    orientation_seed = whole_number(iarg, 2, arg);
-    if (orientation_seed <= 0)
-      error->all(FLERR, "{} orientation random seed {} must be above 0", command, arg[iarg + 2]);
-    return iarg + 3;
-  }
-  if (key == "distribution") {
-    need(iarg, 3, narg, arg);
-    if (distributed) error->all(FLERR, "{} distribution is given twice", command);
-    const std::string kind = arg[iarg + 1];
-    if (kind != "lognormal" && kind != "rrsb")
-      error->all(FLERR, "{} distribution {} must be lognormal or rrsb", command, kind);
-    sizes.kind = kind == "rrsb" ? Dust::SizeDistribution::RRSB : Dust::SizeDistribution::LOGNORMAL;
-    sizes.x50 = positive(iarg, 2, arg);
-    sizes.spread = number(iarg, 3, arg);
-    const bool lognormal = kind == "lognormal";
-    check(iarg, 3, arg, sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread),
-          lognormal ? "above 1" : "above 0");
-    distributed = true;
-    return iarg + 4;
-  }
-  return iarg;
+  return {
+      {"texture", [this](Keywords &words) { take_texture(words); }},
+      {"coverage", [this](Keywords &words) { coverage = words.number(Range::above(0.0)); }},
+      {"seed", [this](Keywords &words) { seed = words.whole_number(1, MAXSMALLINT); }},
+      {"bare", [this](Keywords &words) { take_bare(words); }},
+      {"distribution", [this](Keywords &words) { take_distribution(words); }},
+      {"density", [this](Keywords &words) { density = words.number(Range::above(0.0)); }},
+      {"hamaker",
+       [this](Keywords &words) {
+         if (surface_energy != UNSET) words.refuse("and surface: the adhesion is given twice");
+         const double A = words.number(Range::above(0.0), "A"), z0 = words.number(Range::above(0.0), "z0");
+         surface_energy = Dust::surface_energy(A, z0);
+       }},
+      {"surface",
+       [this](Keywords &words) {
+         if (surface_energy != UNSET) words.refuse("and hamaker: the adhesion is given twice");
+         surface_energy = words.number(Range::above(0.0));
+       }},
+      {"elastic", [this](Keywords &words) { take_elastic(words); }},
+      {"orientation",
+       [this](Keywords &words) {
+         const bool random = words.one_of({"same", "random"}) == 1;
+         orientation_seed = random ? words.whole_number(1, MAXSMALLINT, "SEED") : 0;
+       }},
+      {"write", [this](Keywords &words) { write = words.word("the name of a file"); }},
+  };
 }
 
 /* ---------------------------------------------------------------------- */
 
-int DustOptions::parse_texture(int iarg, int narg, char **arg)
+void DustOptions::take_texture(Keywords &words)
 {
-  if (diameter != 0.0 || !file.empty()) error->all(FLERR, "{} texture is given twice", command);
-  need(iarg, 2, narg, arg);
-  const std::string source = arg[iarg + 1];
-  if (source == "file") {
-    read(arg[iarg + 2]);
-    return iarg + 3;
-  }
-  if (source != "monolayer") error->all(FLERR, "{} texture source {} must be file or monolayer", command, source);
-  diameter = number(iarg, 2, arg);
-  if (!(diameter > 0.0 && std::isfinite(diameter)))
-    error->all(FLERR, "{} texture monolayer diameter {} must be above 0", command, arg[iarg + 2]);
+  if (words.one_of({"file", "monolayer"}, "SOURCE") == 0)
+    read_file(words.word("the name of a file"));
+  else
+    diameter = words.number(Range::above(0.0), "DIAMETER");
+}
 
-  for (iarg += 3; iarg < narg; iarg += 2) {
-    const std::string key = arg[iarg];
-    if (key != "coverage" && key != "seed") break;
-    need(iarg, 1, narg, arg);
-    if (key == "coverage" ? coverage != UNSET : seed != 0) error->all(FLERR, "{} {} is given twice", command, key);
-    if (key == "coverage") {
-      coverage = number(iarg, 1, arg);
-      if (!(coverage > 0.0 && std::isfinite(coverage)))
-        error->all(FLERR, "{} coverage {} must be above 0", command, arg[iarg + 1]);
-    } else {
-      seed = whole_number(iarg, 1, arg);
-      if (seed <= 0) error->all(FLERR, "{} seed {} must be above 0", command, arg[iarg + 1]);
-    }
-  }
-  if (coverage == UNSET) error->all(FLERR, "{} texture monolayer needs coverage", command);
-  if (seed == 0) error->all(FLERR, "{} texture monolayer needs seed", command);
-  return iarg;
+/* ---------------------------------------------------------------------- */
+
+void DustOptions::take_bare(Keywords &words)
+{
+  bare.half_angle = words.number(Range::at_least(0.0).below(3.14159265358979), "THETA");
+  bare_given = true;
+  if (!words.number_follows()) return;
+  double *axis = bare.axis;
+  const char *names[] = {"nx", "ny", "nz"};
+  for (int d = 0; d < 3; d++) axis[d] = words.number(Range::any(), names[d]);
+  const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+  if (!(length > 0.0 && std::isfinite(length))) words.refuse("nx ny nz must be a direction, not 0 0 0");
+  for (int d = 0; d < 3; d++) axis[d] /= length;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DustOptions::take_elastic(Keywords &words)
+{
+  const char *names[] = {"E", "nu", "E_carrier", "nu_carrier"};
+  for (int k = 0; k < 4; k++)
+    elastic[k] = words.number(k % 2 ? Range::above(-1.0).at_most(0.5) : Range::above(0.0), names[k]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DustOptions::take_distribution(Keywords &words)
+{
+  const bool rrsb = words.one_of({"lognormal", "rrsb"}) == 1;
+  sizes.kind = rrsb ? Dust::SizeDistribution::RRSB : Dust::SizeDistribution::LOGNORMAL;
+  sizes.x50 = words.number(Range::above(0.0), "X50");
+  sizes.spread = words.number(Range::above(rrsb ? 0.0 : 1.0), rrsb ? "N" : "SIGMA_G");
+  distributed = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DustOptions::read(int first, int narg, char **arg)
+{
+  Keywords(lmp, command, narg, arg).read(keywords(), first);
+  complete();
 }
 
 /* ----------------------------------------------------------------------
    rank 0 reads, all parse the same text
 ------------------------------------------------------------------------- */
 
-void DustOptions::read(const std::string &name)
+void DustOptions::read_file(const std::string &name)
 {
   file = name;
   std::string text;
@@ -222,18 +162,20 @@ void DustOptions::read(const std::string &name)
 
 void DustOptions::complete()
 {
-  if (diameter == 0.0 && file.empty()) error->all(FLERR, "{} needs keyword texture", command);
-  if (!file.empty() && bare_given)
-    error->all(FLERR, "{} bare goes with texture monolayer: a texture file has its own bare cap", command);
-
-  if (!file.empty() && distributed)
-    error->all(FLERR, "{} distribution goes with texture monolayer: a texture file has its own diameters", command);
+  if (file.empty()) {
+    if (diameter == 0.0) error->all(FLERR, "{} needs keyword texture", command);
+    if (coverage == UNSET) error->all(FLERR, "{} texture monolayer needs coverage", command);
+    if (seed == 0) error->all(FLERR, "{} texture monolayer needs seed", command);
+  } else {
+    const char *extra = coverage != UNSET ? "coverage" : seed ? "seed" : bare_given ? "bare" : "distribution";
+    if (coverage != UNSET || seed || bare_given || distributed)
+      error->all(FLERR, "{} {} goes with texture monolayer: a texture file has its own grains", command, extra);
+  }
   // a carrier that meets the wall with any side has no use for a side without grains
   if (orientation_seed && !bare_given) bare.half_angle = 0.0;
 
-  const bool si = strcmp(update->unit_style, "si") == 0;
   const auto absent = [&](double value, const char *key) {
-    if (value == UNSET && !si)
+    if (value == UNSET && !reference_units())
       error->all(FLERR, "{} needs keyword {} (it has a default with units si only)", command, key);
     return value == UNSET;
   };
@@ -245,6 +187,8 @@ void DustOptions::complete()
     std::copy_n(reference, 4, elastic);
   }
 }
+
+bool DustOptions::reference_units() const { return strcmp(update->unit_style, "si") == 0; }
 
 /* ---------------------------------------------------------------------- */
 

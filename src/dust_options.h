@@ -9,8 +9,10 @@
 
 #include "core/quaternion.h"
 #include "core/texture.h"
+#include "keywords.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -18,19 +20,10 @@ namespace LAMMPS_NS {
 
 class DustOptions : protected Pointers {
  public:
-  DustOptions(class LAMMPS *, const std::string &);
+  DustOptions(class LAMMPS *, const std::string &command);
 
-  // reads the keyword at iarg and its values; returns the place after them, or iarg if the keyword is not known here
-  int parse(int iarg, int narg, char **arg);
-  // after the last keyword: what must be there is, the rest gets its default
-  void complete();
-
-  // helpers for the keywords of a command itself: errors name the command, the keyword and the value
-  void need(int iarg, int n, int narg, char **arg) const;
-  double number(int iarg, int k, char **arg) const;
-  int whole_number(int iarg, int k, char **arg) const;
-  double positive(int iarg, int k, char **arg) const;
-  void check(int iarg, int k, char **arg, bool ok, const char *range) const;
+  // reads the words from arg[first] on, of a command that has no keywords of its own
+  void read(int first, int narg, char **arg);
 
   // diameter of the carriers of a group on all ranks, halved; 0 if there are none, an error if they differ
   double carrier_radius(int igroup) const;
@@ -46,8 +39,16 @@ class DustOptions : protected Pointers {
   double density, surface_energy, elastic[4];    // elastic: E and nu of the grains, E and nu of the carriers
   double modulus() const;                        // combined modulus E*
 
- private:
+ protected:
   std::string command;
+
+  // one for each word that is known here
+  std::vector<Keyword> keywords();
+  // after the last keyword: what must be there is, the rest gets its default
+  void complete();
+  bool reference_units() const;    // in which the reference case is known, so that there are defaults
+
+ private:
   std::string file, write;
   Dust::Texture from_file;
   double diameter, coverage;
@@ -58,8 +59,11 @@ class DustOptions : protected Pointers {
   bool bare_given;
   int orientation_seed;    // 0: all the same
 
-  int parse_texture(int iarg, int narg, char **arg);
-  void read(const std::string &);
+  void take_texture(Keywords &);
+  void take_bare(Keywords &);
+  void take_elastic(Keywords &);
+  void take_distribution(Keywords &);
+  void read_file(const std::string &);
 };
 
 }    // namespace LAMMPS_NS

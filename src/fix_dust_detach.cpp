@@ -30,10 +30,6 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-// its own ones, beside those of DustOptions
-static const std::vector<std::string> KEYWORDS = {"friction", "rolling", "damping",  "tangential", "criteria", "counts",
-                                                  "every",    "rows",    "rotation", "stiffen",    "mass",     "emit"};
-
 static double distance2(const double *a, const double *b)
 {
   const double e[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -45,11 +41,11 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), options(lmp, "Fix dust/detach"), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
+    Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
     attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), steps(0.0), began(nullptr),
     newcomers(true), mine{}, open_windows(0), too_soft(1.0), warned(false), exchange_room(0)
 {
-  parse(narg, arg);
+  work.locate = settings.keep_rows || settings.lose_mass;
   check_order();    // of what is there already; the rest before a run
 
   scalar_flag = vector_flag = global_freq = 1;
@@ -62,14 +58,14 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   size_local_cols = NROW;
   restart_global = restart_peratom = create_attribute = 1;
   maxexchange_dynamic = 1;
-  force_reneighbor = lose_mass;    // carriers get lighter and atoms are created where neighbour lists are new
+  force_reneighbor = settings.lose_mass;    // carriers get lighter and atoms are created where neighbour lists are new
   next_reneighbor = -1;
   maxexchange = fixed_size() + 1;
 
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
   grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
-  carrier_radius = options.carrier_radius(igroup);
+  carrier_radius = settings.carrier_radius(igroup);
   if (carrier_radius > 0.0) build();
   // last, as an error above leaves no fix behind that could be called back
   atom->add_callback(Atom::GROW);
@@ -93,113 +89,16 @@ FixDustDetach::~FixDustDetach()
   memory->destroy(array_atom);
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixDustDetach::parse(int narg, char **arg)
-{
-  friction = strcmp(update->unit_style, "si") == 0 ? 0.3 : -1.0;    // the reference case, as in DustOptions
-  rolling = 0.15;
-  damping = -1.0;    // quasi-static
-  every = 1;
-  keep_rows = rotation = true;
-  stiffen_acceleration = stiffen_time = 1.0;
-  lose_mass = false;
-  emit = 0;
-  bool mass_given = false;
-
-  int iarg = 3;
-  while (iarg < narg) {
-    const int next = options.parse(iarg, narg, arg);
-    if (next > iarg) {
-      iarg = next;
-      continue;
-    }
-    const std::string key = arg[iarg];
-    if (std::find(KEYWORDS.begin(), KEYWORDS.end(), key) == KEYWORDS.end())
-      error->all(
-          FLERR,
-          "Unknown fix dust/detach keyword {}: use {}, or texture, bare, distribution, density, hamaker, surface, "
-          "elastic, write or orientation",
-          key, utils::join_words(KEYWORDS, ", "));
-    options.need(iarg, 1, narg, arg);
-    const std::string value = arg[iarg + 1];
-    const auto yes = [&]() {
-      const bool on = value == "yes" || value == "on" || value == "true";
-      options.check(iarg, 1, arg, on || value == "no" || value == "off" || value == "false", "yes or no");
-      return on;
-    };
-    if (key == "friction") {
-      friction = options.number(iarg, 1, arg);
-      options.check(iarg, 1, arg, friction >= 0.0 && std::isfinite(friction), "at least 0");
-    } else if (key == "damping") {
-      damping = options.number(iarg, 1, arg);
-      options.check(iarg, 1, arg, damping >= 0.0 && std::isfinite(damping), "at least 0");
-    } else if (key == "rolling") {
-      rolling = options.number(iarg, 1, arg);
-      options.check(iarg, 1, arg, rolling >= 0.0 && std::isfinite(rolling), "at least 0 (rad)");
-    } else if (key == "tangential") {
-      options.check(iarg, 1, arg,
-                    value == "estimate" || value == "integrate" || value == "frictionless" || value == "off",
-                    "estimate, integrate, frictionless or off");
-      criteria.tangential = value == "estimate"       ? Dust::Criteria::ESTIMATE
-                            : value == "integrate"    ? Dust::Criteria::INTEGRATE
-                            : value == "frictionless" ? Dust::Criteria::FRICTIONLESS
-                                                      : Dust::Criteria::OFF;
-    } else if (key == "criteria") {
-      options.check(iarg, 1, arg, value == "liftoff" || value == "ibrahim", "liftoff or ibrahim");
-      criteria.ibrahim = value == "ibrahim";
-    } else if (key == "every") {
-      every = options.whole_number(iarg, 1, arg);
-      options.check(iarg, 1, arg, every > 0, "at least 1");
-    } else if (key == "counts") {
-      criteria.count = yes();
-    } else if (key == "rows") {
-      keep_rows = yes();
-    } else if (key == "rotation") {
-      rotation = yes();
-    } else if (key == "stiffen") {
-      const double factor = options.number(iarg, 1, arg);
-      options.check(iarg, 1, arg, factor >= 1.0 && std::isfinite(factor), "at least 1");
-      // Hertz: F ~ E delta^1.5, so that for the same impact F ~ E^0.4 and time ~ E^-0.4
-      stiffen_acceleration = std::pow(factor, 0.4);
-      stiffen_time = 1.0 / stiffen_acceleration;
-    } else if (key == "mass") {
-      lose_mass = yes();
-      mass_given = true;
-    } else if (value == "none") {
-      emit = 0;
-    } else {
-      options.check(iarg, 1, arg, utils::is_integer(value), "none or an atom type");
-      emit = options.whole_number(iarg, 1, arg);
-      options.check(iarg, 1, arg, emit >= 1 && emit <= atom->ntypes,
-                    fmt::format("none or from 1 to {}", atom->ntypes).c_str());
-    }
-    iarg += 2;
-  }
-  options.complete();
-  if (friction < 0.0) error->all(FLERR, "Fix dust/detach needs keyword friction (it has a default with units si only)");
-  if (rotation && (!atom->omega_flag || !atom->torque_flag))
-    error->all(FLERR, "Fix dust/detach rotation yes needs atoms with spin and torque, such as atom_style sphere");
-  if (emit && mass_given && !lose_mass)
-    error->all(FLERR, "Fix dust/detach emit {} needs mass yes: grains bring the mass that their carriers lose", emit);
-  if (emit && igroup == 0)
-    error->all(FLERR, "Fix dust/detach emit {} needs a group of carriers without the emitted grains, not group all",
-               emit);
-  if (emit && domain->triclinic) error->all(FLERR, "Fix dust/detach emit {} needs an orthogonal box", emit);
-  if (emit) lose_mass = true;
-  work.locate = keep_rows || lose_mass;
-}
-
 /* ----------------------------------------------------------------------
    texture and what depends on it; on all ranks at once
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::build()
 {
-  texture = options.texture(carrier_radius);
-  const Dust::Material material = {options.density, options.surface_energy, options.modulus(), friction, rolling,
-                                   damping};
-  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, criteria);
+  texture = settings.texture(carrier_radius);
+  const Dust::Material material = {settings.density,  settings.surface_energy, settings.modulus(),
+                                   settings.friction, settings.rolling,        settings.damping};
+  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, settings.criteria);
 
   // a number that tells this texture from another one in a restart file
   texture_checksum = 0.0;
@@ -234,7 +133,7 @@ void FixDustDetach::init()
   look_for_soft_contacts();
 
   if (functions) {
-    const double radius = options.carrier_radius(igroup);
+    const double radius = settings.carrier_radius(igroup);
     if (radius > 0.0 && !DustOptions::same_size(radius, carrier_radius))
       error->all(
           FLERR,
@@ -242,7 +141,7 @@ void FixDustDetach::init()
           "the fix",
           id, 2.0 * carrier_radius, 2.0 * radius);
     adopt();
-  } else if ((carrier_radius = options.carrier_radius(igroup)) > 0.0) {
+  } else if ((carrier_radius = settings.carrier_radius(igroup)) > 0.0) {
     build();
   } else {
     bool inserts = false;
@@ -305,7 +204,7 @@ void FixDustDetach::setup_post_neighbor() { post_neighbor(); }
 
 void FixDustDetach::post_neighbor()
 {
-  if (!functions && (carrier_radius = options.carrier_radius(igroup)) > 0.0) build();
+  if (!functions && (carrier_radius = settings.carrier_radius(igroup)) > 0.0) build();
   if (newcomers) {
     adopt();
     weigh();
@@ -323,8 +222,8 @@ void FixDustDetach::adopt()
   newcomers = false;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || state[i] != NO_CARRIER) continue;
-    if (emit && atom->type[i] == emit)
-      error->one(FLERR, "Fix dust/detach emit {} is also the type of carrier {}", emit, atom->tag[i]);
+    if (settings.emit && atom->type[i] == settings.emit)
+      error->one(FLERR, "Fix dust/detach emit {} is also the type of carrier {}", settings.emit, atom->tag[i]);
     if (!DustOptions::same_size(atom->radius[i], carrier_radius))
       error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
                  atom->tag[i], 2.0 * atom->radius[i], 2.0 * carrier_radius);
@@ -332,7 +231,7 @@ void FixDustDetach::adopt()
     std::copy(functions->all_attached().begin(), functions->all_attached().end(), attached[i]);
     array_atom[i][ATTACHED] = functions->grains();
     mine.initial += functions->grains();
-    if (orientation) orientation[i] = options.orientation(atom->tag[i]);
+    if (orientation) orientation[i] = settings.orientation(atom->tag[i]);
     began[i] = NOT_WEIGHED;
   }
 }
@@ -340,7 +239,7 @@ void FixDustDetach::adopt()
 // not yet where the fix is made: a restart file may bring carriers that have lost some already
 void FixDustDetach::weigh()
 {
-  if (!lose_mass || !functions) return;
+  if (!settings.lose_mass || !functions) return;
   for (int i = 0; i < atom->nlocal; i++) {
     if (state[i] == NO_CARRIER || began[i] != NOT_WEIGHED) continue;
     began[i] = 0.0;
@@ -364,7 +263,7 @@ void FixDustDetach::post_force(int /*vflag*/)
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
   const double *const rmass = atom->rmass;
-  const bool spins = rotation && nlocal > 0;
+  const bool spins = settings.rotation && nlocal > 0;
   const double *torque = spins ? atom->torque[0] : nullptr, *omega = spins ? atom->omega[0] : nullptr;
   double *turned = spins ? angle[0] : nullptr;
   const double dt = update->dt;
@@ -395,7 +294,7 @@ void FixDustDetach::post_force(int /*vflag*/)
       if (!touches && states[i] <= FREE_FLIGHT) continue;
       if (touches && states[i] == AT_REST) {    // what most carriers of a bed do
         const double torque2 = spins ? squared(torque + 3 * i) : 0.0, spin2 = spins ? squared(omega + 3 * i) : 0.0;
-        if (!functions->might_move(squared(f), torque2, spin2, stiffen_time * rmass[i])) continue;
+        if (!functions->might_move(squared(f), torque2, spin2, settings.stiffen_time * rmass[i])) continue;
       }
       if (!(mask[i] & groupbit) || states[i] == NO_CARRIER) continue;
       if (touches)
@@ -407,9 +306,9 @@ void FixDustDetach::post_force(int /*vflag*/)
     }
   }
   if (spins && update->ntimestep % TURN_EVERY == 0) turn();
-  if (update->ntimestep % every != 0) return;
+  if (update->ntimestep % settings.every != 0) return;
   if (open_windows) close_window();
-  if (lose_mass) {
+  if (settings.lose_mass) {
     int any = !losses.empty();
     MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
     if (any) next_reneighbor = update->ntimestep + 1;
@@ -435,9 +334,9 @@ void FixDustDetach::turn()
 Dust::Motion FixDustDetach::motion_of(int i) const
 {
   Dust::Motion motion = {};
-  const double per_mass = stiffen_acceleration / atom->rmass[i];
+  const double per_mass = settings.stiffen_acceleration / atom->rmass[i];
   for (int d = 0; d < 3; d++) motion.acceleration[d] = atom->f[i][d] * per_mass;
-  if (!rotation) return motion;
+  if (!settings.rotation) return motion;
   constexpr double INERTIA = 0.4;    // of a sphere, as in fix nve/sphere
   const double per_inertia = per_mass / (INERTIA * atom->radius[i] * atom->radius[i]);
   for (int d = 0; d < 3; d++) {
@@ -456,8 +355,8 @@ void FixDustDetach::collide(int i)
   if (state[i] == FREE_FLIGHT) began[i] = steps;
   if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
-  if (collision.step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
-  const bool grows = !collision.weak() || criteria.tangential == Dust::Criteria::INTEGRATE;
+  if (collision.step(*functions, motion, settings.stiffen_time * update->dt, attached[i], work)) record(i);
+  const bool grows = !collision.weak() || settings.criteria.tangential == Dust::Criteria::INTEGRATE;
   if (grows) make_exchange_room(collision);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
@@ -468,7 +367,7 @@ void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
   state[i] = start_collision();
   Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
-  if (rotation) now.turn_by(angle[i], 1.0);
+  if (settings.rotation) now.turn_by(angle[i], 1.0);
   collisions[state[i]].begin(now, motion.spin);
   make_exchange_room(collisions[state[i]]);
 }
@@ -503,7 +402,7 @@ void FixDustDetach::finish_collision(int i, int next)
 void FixDustDetach::leave_contact(int i)
 {
   state[i] = FREE_FLIGHT;
-  array_atom[i][CONTACT_TIME] = (steps - began[i]) * stiffen_time * update->dt;
+  array_atom[i][CONTACT_TIME] = (steps - began[i]) * settings.stiffen_time * update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -515,7 +414,7 @@ void FixDustDetach::spin_off(int i)
   const Dust::Motion motion = motion_of(i);
   if (!functions->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
   begin_collision(i, motion);
-  if (collisions[state[i]].step(*functions, motion, stiffen_time * update->dt, attached[i], work)) record(i);
+  if (collisions[state[i]].step(*functions, motion, settings.stiffen_time * update->dt, attached[i], work)) record(i);
   retire(state[i]);
   state[i] = FREE_FLIGHT;
 }
@@ -573,10 +472,10 @@ void FixDustDetach::record(int i)
     const double distance = carrier_radius + grain.radius, *n = d.direction, *w = d.velocity;
     const double place[3] = {x[0] + distance * n[0], x[1] + distance * n[1], x[2] + distance * n[2]};
     const double speed[3] = {velocity[0] + w[0], velocity[1] + w[1], velocity[2] + w[2]};
-    if (keep_rows)
+    if (settings.keep_rows)
       events.push_back({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
                         place[0], place[1], place[2], speed[0], speed[1], speed[2]});
-    if (lose_mass) {
+    if (settings.lose_mass) {
       const double *spin = atom->omega[i];
       losses.push_back({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(),
                         grain.radius, steps, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0],
@@ -698,13 +597,13 @@ double FixDustDetach::memory_usage()
 void FixDustDetach::setup_pre_exchange()
 {
   share_exchange_room();
-  if (lose_mass) shed();
+  if (settings.lose_mass) shed();
 }
 
 void FixDustDetach::pre_exchange()
 {
   share_exchange_room();
-  if (lose_mass && update->ntimestep == next_reneighbor) shed();
+  if (settings.lose_mass && update->ntimestep == next_reneighbor) shed();
 }
 
 void FixDustDetach::shed()
@@ -724,7 +623,7 @@ void FixDustDetach::shed()
     for (auto loss = range.first; loss != range.second; ++loss) carrier[loss - all.begin()] = i;
   }
   std::vector<char> leaves(all.size(), 0);
-  if (emit) {
+  if (settings.emit) {
     find_room(all, carrier, leaves);
     MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_CHAR, MPI_MAX, world);
     share_room(all, leaves);
@@ -734,8 +633,8 @@ void FixDustDetach::shed()
     const int i = carrier[first];
     double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};    // of what leaves carrier i
     for (last = first; last < all.size() && all[last][CARRIER] == all[first][CARRIER]; last++) {
-      if (i >= 0 && emit && !leaves[last]) mine.no_room += 1.0;
-      if (emit && !leaves[last]) continue;
+      if (i >= 0 && settings.emit && !leaves[last]) mine.no_room += 1.0;
+      if (settings.emit && !leaves[last]) continue;
       mass += all[last][LOSS_MASS];
       for (int d = 0; d < 3; d++) momentum[d] += all[last][LOSS_MASS] * all[last][LOSS_V + d];
     }
@@ -744,14 +643,14 @@ void FixDustDetach::shed()
     for (int d = 0; d < 3; d++) atom->v[i][d] = (atom->rmass[i] * atom->v[i][d] - momentum[d]) / rest;
     atom->rmass[i] = rest;
   }
-  if (!emit) return;
+  if (!settings.emit) return;
   tagint tag = DustAtoms::highest_tag(lmp);
   DustAtoms atoms(lmp);
   for (size_t k = 0; k < all.size(); k++) {
     if (!leaves[k]) continue;
     double x[3];
     place_of(all[k], x);
-    atoms.create(emit, ++tag, x, all[k][LOSS_RADIUS], all[k][LOSS_MASS], &all[k][LOSS_V], &all[k][LOSS_SPIN]);
+    atoms.create(settings.emit, ++tag, x, all[k][LOSS_RADIUS], all[k][LOSS_MASS], &all[k][LOSS_V], &all[k][LOSS_SPIN]);
   }
   atoms.finish();
 }
@@ -861,12 +760,13 @@ void FixDustDetach::look_for_soft_contacts()
   too_soft = 1.0;
   warned = false;
   const double modulus =
-      Dust::combined_modulus(options.elastic[2], options.elastic[3], options.elastic[2], options.elastic[3]);
+      Dust::combined_modulus(settings.elastic[2], settings.elastic[3], settings.elastic[2], settings.elastic[3]);
   const auto look = [&](const Granular_NS::GranularModel *model) {
     const Granular_NS::GranSubModNormal *normal = model->normal_model;
     if (!normal->get_material_properties()) return;
     const double E = normal->get_emod(), nu = normal->get_poiss();
-    too_soft = std::max(too_soft, std::pow(modulus / Dust::combined_modulus(E, nu, E, nu), 0.4) / stiffen_acceleration);
+    too_soft = std::max(too_soft,
+                        std::pow(modulus / Dust::combined_modulus(E, nu, E, nu), 0.4) / settings.stiffen_acceleration);
   };
 
   std::vector<int> carriers(atom->ntypes + 1, 0);
@@ -892,7 +792,7 @@ void FixDustDetach::grow_arrays(int nmax)
   memory->grow(began, nmax, "dust/detach:began");
   memory->grow(array_atom, nmax, NCOLUMNS, "dust/detach:array_atom");
   if (oriented()) memory->grow(orientation, nmax, "dust/detach:orientation");
-  if (rotation) memory->grow(angle, nmax, 3, "dust/detach:angle");
+  if (settings.rotation) memory->grow(angle, nmax, 3, "dust/detach:angle");
   if (functions) memory->grow(attached, nmax, functions->words(), "dust/detach:attached");
 }
 
@@ -930,9 +830,9 @@ int FixDustDetach::fixed_size() const
   return 2 + NCOLUMNS + 2 + orientation_size() + (functions ? functions->words() : 0);
 }
 
-bool FixDustDetach::oriented() const { return rotation || !options.same_orientation(); }
+bool FixDustDetach::oriented() const { return settings.rotation || !settings.same_orientation(); }
 
-int FixDustDetach::orientation_size() const { return rotation ? 7 : oriented() ? 4 : 0; }
+int FixDustDetach::orientation_size() const { return settings.rotation ? 7 : oriented() ? 4 : 0; }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
 void FixDustDetach::make_exchange_room(const Dust::Collision &collision)
@@ -1025,7 +925,7 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  std::vector<double> list = {texture_checksum, double(orientation_size()), double(lose_mass), steps};
+  std::vector<double> list = {texture_checksum, double(orientation_size()), double(settings.lose_mass), steps};
   Totals total;
   MPI_Reduce(&mine, &total, sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
   const auto *p = reinterpret_cast<const double *>(&total);
@@ -1066,7 +966,7 @@ void FixDustDetach::restart(char *buf)
   if (checksum != 0.0 && *p != orientation_size())
     error->all(FLERR, "Fix dust/detach rotation or orientation is not that of the restart file");
   p++;
-  if (checksum != 0.0 && *p != double(lose_mass))
+  if (checksum != 0.0 && *p != double(settings.lose_mass))
     error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}", *p != 0.0 ? "yes" : "no");
   p++;
   steps = *p++;

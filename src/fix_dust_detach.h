@@ -14,7 +14,7 @@ FixStyle(dust/detach,FixDustDetach);
 #include "fix.h"
 
 #include "core/detachment.h"
-#include "dust_options.h"
+#include "detach_settings.h"
 
 #include <array>
 #include <deque>
@@ -55,16 +55,7 @@ class FixDustDetach : public Fix {
   int maxsize_restart() override;
 
  private:
-  // what the input asks for
-  DustOptions options;
-  Dust::Criteria criteria;
-  double friction, rolling, damping;
-  int every;
-  bool keep_rows, rotation;
-  double stiffen_acceleration, stiffen_time;    // what softened contacts give, times these, is what stiff ones would
-  bool lose_mass;
-  int emit;    // type of the atoms that detached grains become, or 0
-  void parse(int, char **);
+  DetachSettings settings;
   void check_order() const;
 
   // texture, once the size of the carriers is known

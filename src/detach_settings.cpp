@@ -1,0 +1,86 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "detach_settings.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+static constexpr double UNSET = -1.0;
+
+/* ---------------------------------------------------------------------- */
+
+DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
+    DustOptions(_lmp, "Fix dust/detach"), friction(UNSET), rolling(0.15), damping(UNSET), every(1), keep_rows(true),
+    rotation(true), stiffen_acceleration(1.0), stiffen_time(1.0), lose_mass(false), emit(0), weightless(false)
+{
+  constexpr int FIRST = 3;    // after ID, group and style
+  Keywords(lmp, command, narg, arg).read(keywords(), FIRST);
+  complete();
+  check(igroup);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<Keyword> DetachSettings::keywords()
+{
+  std::vector<Keyword> table = DustOptions::keywords();
+  const std::vector<Keyword> own = {
+      {"friction", [this](Keywords &words) { friction = words.number(Range::at_least(0.0)); }},
+      {"rolling", [this](Keywords &words) { rolling = words.number(Range::at_least(0.0)); }},
+      {"damping", [this](Keywords &words) { damping = words.number(Range::at_least(0.0)); }},
+      {"tangential",
+       [this](Keywords &words) {
+         // in the order of their names
+         constexpr decltype(criteria.tangential) LAWS[] = {Dust::Criteria::ESTIMATE, Dust::Criteria::INTEGRATE,
+                                                           Dust::Criteria::FRICTIONLESS, Dust::Criteria::OFF};
+         criteria.tangential = LAWS[words.one_of({"estimate", "integrate", "frictionless", "off"})];
+       }},
+      {"criteria", [this](Keywords &words) { criteria.ibrahim = words.one_of({"liftoff", "ibrahim"}) == 1; }},
+      {"counts", [this](Keywords &words) { criteria.count = words.yes_or_no(); }},
+      {"every", [this](Keywords &words) { every = words.whole_number(1, MAXSMALLINT); }},
+      {"rows", [this](Keywords &words) { keep_rows = words.yes_or_no(); }},
+      {"rotation", [this](Keywords &words) { rotation = words.yes_or_no(); }},
+      {"stiffen",
+       [this](Keywords &words) {
+         // Hertz: F ~ E delta^1.5, so that for the same impact F ~ E^0.4 and time ~ E^-0.4
+         stiffen_acceleration = std::pow(words.number(Range::at_least(1.0)), 0.4);
+         stiffen_time = 1.0 / stiffen_acceleration;
+       }},
+      {"mass",
+       [this](Keywords &words) {
+         lose_mass = words.yes_or_no();
+         weightless = !lose_mass;
+       }},
+      {"emit", [this](Keywords &words) { emit = words.whole_number_or("none", 1, atom->ntypes); }},
+      {"contact", [this](Keywords &words) { contacts.push_back(words.word("the ID of a fix")); }, true},
+  };
+  table.insert(table.end(), own.begin(), own.end());
+  return table;
+}
+
+/* ----------------------------------------------------------------------
+   what goes with what
+------------------------------------------------------------------------- */
+
+void DetachSettings::check(int igroup)
+{
+  if (friction == UNSET && !reference_units())
+    error->all(FLERR, "{} needs keyword friction (it has a default with units si only)", command);
+  if (friction == UNSET) friction = 0.3;
+  if (rotation && (!atom->omega_flag || !atom->torque_flag))
+    error->all(FLERR, "{} rotation yes needs atoms with spin and torque, such as atom_style sphere", command);
+  if (!emit) return;
+  if (weightless)
+    error->all(FLERR, "{} emit {} needs mass yes: grains bring the mass that their carriers lose", command, emit);
+  if (igroup == 0)
+    error->all(FLERR, "{} emit {} needs a group of carriers without the emitted grains, not group all", command, emit);
+  if (domain->triclinic) error->all(FLERR, "{} emit {} needs an orthogonal box", command, emit);
+  lose_mass = true;
+}

@@ -1,0 +1,42 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_DUST_DETACH_SETTINGS_H
+#define LMP_DUST_DETACH_SETTINGS_H
+
+#include "core/detachment.h"
+#include "dust_options.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// what the input of a fix dust/detach asks for: the grains, and what it has keywords of its own for
+
+class DetachSettings : public DustOptions {
+ public:
+  // all words of the fix, whose carriers are a group; an error names the word that is wrong
+  DetachSettings(class LAMMPS *, int igroup, int narg, char **arg);
+
+  Dust::Criteria criteria;
+  double friction, rolling;
+  double damping;    // below 0: none, the normal motion is quasi-static
+  int every;         // steps of a window
+  bool keep_rows, rotation;
+  double stiffen_acceleration, stiffen_time;    // what softened contacts give, times these, is what stiff ones would
+  bool lose_mass;
+  int emit;                             // type of the atoms that detached grains become, or 0
+  std::vector<std::string> contacts;    // IDs of fixes whose forces are contact forces, too
+
+ private:
+  bool weightless;    // mass no was asked for
+
+  std::vector<Keyword> keywords();
+  void check(int igroup);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
