@@ -6,6 +6,7 @@
 
 #include "core/hamaker.h"
 #include "core/jkr.h"
+#include "core/texture_file.h"
 
 #include "atom.h"
 #include "comm.h"

@@ -8,7 +8,7 @@
 #include "pointers.h"
 
 #include "core/quaternion.h"
-#include "core/texture.h"
+#include "core/texture_placement.h"
 #include "keywords.h"
 
 #include <string>

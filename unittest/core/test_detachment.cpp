@@ -4,6 +4,7 @@
 
 #include "hamaker.h"
 #include "jkr.h"
+#include "texture_placement.h"
 #include "vec.h"
 
 #include <gtest/gtest.h>

@@ -9,6 +9,7 @@
 #include "jkr.h"
 #include "motion_bound.h"
 #include "normal_motion.h"
+#include "texture_placement.h"
 #include "vec.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // Textures: exact coverage, no overlap, bare cap, uniform, reproducible; text format and its errors.
 
-#include "texture.h"
+#include "texture_file.h"
+#include "texture_placement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,276 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "texture_placement.h"
+
+#include "geometry.h"
+#include "shell_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+using namespace Dust;
+
+namespace {
+
+constexpr double MIN_GAP = 1.0e-3;    // between two grains, of the sum of their radii
+constexpr double CUT = 0.01;          // of a size distribution, at either end, by volume
+constexpr double MOST_GRAINS = 1.0e8;
+
+// unit vector at height z and azimuth phi
+void point_at(double z, double phi, double *n)
+{
+  const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
+  n[0] = s * std::cos(phi);
+  n[1] = s * std::sin(phi);
+  n[2] = z;
+}
+
+/* ----------------------------------------------------------------------
+   random sequential placement of grains on the part of a carrier above a height, from large to small
+------------------------------------------------------------------------- */
+
+class Placement {
+ public:
+  Placement(double lowest_z, double carrier_radius, double largest, double smallest, std::mt19937_64 &numbers) :
+      zlo(lowest_z), carrier(carrier_radius), least(smallest), size(largest), cells_for(largest), tries(0),
+      grid(reach()), random(numbers)
+  {
+  }
+
+  // places one grain, no larger than the last one; false if there is no room for it
+  bool place(double radius)
+  {
+    size = radius;
+    if (radius < cells_for) cells.clear();    // smaller ones have room where larger ones have none
+    const Cell everywhere = {zlo, 1.0, 0.0, 2.0 * PI};
+    if (cells.empty()) {
+      // as long as most of the sphere is free, tries anywhere are cheapest
+      for (int misses = 0; misses < 2000; misses++)
+        if (try_cell(everywhere)) return true;
+      cells = {everywhere};
+      cells_for = std::max(0.9 * size, least);    // so that they serve the next grains, too
+      tries = 0;
+    }
+    while (true) {
+      for (; tries > 0; tries--)
+        if (try_cell(cells[static_cast<size_t>(uniform(random) * cells.size())])) {
+          tries--;
+          return true;
+        }
+      if (cells_for < size && cells[0].phi1 - cells[0].phi0 < 0.05 * reach()) {    // room for smaller grains alone
+        cells = {everywhere};
+        cells_for = size;
+      }
+      if (!refine()) return false;
+      tries = cells.size();
+    }
+  }
+
+  std::vector<Grain> grains;
+
+  static double uniform(std::mt19937_64 &random)    // the standard's own distributions differ by library
+  {
+    return (random() >> 11) * 0x1.0p-53;
+  }
+
+ private:
+  struct Cell {    // all cells in a list have the same area, as area is dz dphi
+    double z0, z1, phi0, phi1;
+  };
+
+  double zlo, carrier, least, size;
+  std::vector<Cell> cells;    // where there may be room for a grain of a size; empty as long as nearly anywhere
+  double cells_for;           // that size, at most the next grain's
+  size_t tries;               // in these cells, until the next refinement
+  ShellGrid grid;
+  std::mt19937_64 &random;
+
+  // squared chord that keeps a grain's direction off another's, from the triangle of both centres and the carrier's
+  double least_chord2(double a, double b) const
+  {
+    const double touch = (a + b) * (1.0 + MIN_GAP), step = a - b;
+    return (touch * touch - step * step) / ((carrier + a) * (carrier + b));
+  }
+  double reach() const { return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(least_chord2(size, size)))); }
+
+  bool try_cell(const Cell &cell)
+  {
+    Grain grain;
+    grain.radius = size;
+    const double z = cell.z0 + uniform(random) * (cell.z1 - cell.z0);
+    point_at(z, cell.phi0 + uniform(random) * (cell.phi1 - cell.phi0), grain.n);
+    if (grid.any_near(grain.n,
+                      [&](int id) { return chord2(grain.n, grains[id].n) < least_chord2(size, grains[id].radius); }))
+      return false;
+    grid.insert(static_cast<int>(grains.size()), grain.n);
+    grains.push_back(grain);
+    return true;
+  }
+
+  // true if one grain excludes the whole cell: the cell's farthest points are corners once it is narrower than pi/2
+  bool covered(const Cell &cell) const
+  {
+    if (cell.phi1 - cell.phi0 > 0.5 * PI) return false;
+    double middle[3], corner[4][3];
+    point_at(0.5 * (cell.z0 + cell.z1), 0.5 * (cell.phi0 + cell.phi1), middle);
+    point_at(cell.z0, cell.phi0, corner[0]);
+    point_at(cell.z0, cell.phi1, corner[1]);
+    point_at(cell.z1, cell.phi0, corner[2]);
+    point_at(cell.z1, cell.phi1, corner[3]);
+    double radius = 0.0;
+    for (auto &c : corner) radius = std::max(radius, std::sqrt(chord2(middle, c)));
+    return grid.any_near(middle, [&](int id) {
+      const double limit =
+          std::sqrt(least_chord2(cells_for, grains[id].radius)) - radius;    // chords obey the triangle inequality
+      return limit > 0.0 && chord2(middle, grains[id].n) < limit * limit;
+    });
+  }
+
+  // quarters the cells until most are smaller than a grain's surroundings, and drops those without room
+  bool refine()
+  {
+    const double wide = 0.5 * reach();
+    do {
+      if ((cells.empty()) || (cells[0].z1 - cells[0].z0 < 1.0e-12)) return false;
+      std::vector<Cell> finer;
+      for (const Cell &c : cells) {
+        const double z = 0.5 * (c.z0 + c.z1), phi = 0.5 * (c.phi0 + c.phi1);
+        for (const Cell &quarter : {Cell{c.z0, z, c.phi0, phi}, Cell{z, c.z1, c.phi0, phi}, Cell{c.z0, z, phi, c.phi1},
+                                    Cell{z, c.z1, phi, c.phi1}})
+          if (!covered(quarter)) finer.push_back(quarter);
+      }
+      cells.swap(finer);
+    } while (!cells.empty() && cells[0].phi1 - cells[0].phi0 > wide);
+    return !cells.empty();
+  }
+};
+
+// turns v by the rotation that takes -z to axis
+void turn_from_south(const double *axis, double *v)
+{
+  const double c = -axis[2];
+  if (c < -1.0 + 1.0e-12) {    // the other pole: half a turn about x
+    v[1] = -v[1];
+    v[2] = -v[2];
+    return;
+  }
+  const double k[3] = {axis[1], -axis[0], 0.0};    // (-z) x axis, of length sin
+  const double kxv[3] = {k[1] * v[2], -k[0] * v[2], k[0] * v[1] - k[1] * v[0]};
+  const double along = (k[0] * v[0] + k[1] * v[1]) / (1.0 + c);
+  for (int d = 0; d < 3; d++) v[d] = v[d] * c + kxv[d] + k[d] * along;
+  const double length = std::sqrt(dot(v, v));
+  for (int d = 0; d < 3; d++) v[d] /= length;
+}
+
+void check_coverage(double coverage)
+{
+  if (!(coverage > 0.0 && std::isfinite(coverage)))
+    throw TextureError("coverage " + number_text(coverage) + " is not above 0");
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+double Dust::grains_for_coverage(double coverage, double carrier_radius, double grain_radius)
+{
+  const double ratio = carrier_radius / grain_radius;
+  return std::round(4.0 * coverage * ratio * ratio);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double SizeDistribution::quantile(double fraction) const
+{
+  if (kind == RRSB) return x50 * std::pow(-std::log1p(-fraction) / std::log(2.0), 1.0 / spread);
+  // where the error function says so, by bisection: the fraction lies within 3 standard deviations
+  double low = -3.0, high = 3.0;
+  while (high - low > 1.0e-15) {
+    const double middle = 0.5 * (low + high);
+    if (middle == low || middle == high) break;
+    (0.5 * std::erfc(-middle / std::sqrt(2.0)) < fraction ? low : high) = middle;
+  }
+  return x50 * std::exp(high * std::log(spread));
+}
+
+/* ----------------------------------------------------------------------
+   by volume between the cuts, taken with the probability (finest/x)^3: by number
+------------------------------------------------------------------------- */
+
+static std::vector<double> draw_radii(const SizeDistribution &sizes, double sum_of_squares, std::mt19937_64 &random)
+{
+  const double finest = sizes.quantile(CUT), coarsest = sizes.quantile(1.0 - CUT);
+  std::vector<double> radii;
+  for (double sum = 0.0; sum < sum_of_squares;) {
+    double x;
+    if (sizes.kind == SizeDistribution::RRSB) {
+      x = sizes.quantile(CUT + (1.0 - 2.0 * CUT) * Placement::uniform(random));
+    } else {    // Box and Muller
+      const double r = std::sqrt(-2.0 * std::log1p(-Placement::uniform(random)));
+      x = sizes.x50 * std::pow(sizes.spread, r * std::cos(2.0 * PI * Placement::uniform(random)));
+      if (x < finest || x > coarsest) continue;
+    }
+    if (Placement::uniform(random) > std::pow(finest / x, 3)) continue;
+    radii.push_back(0.5 * x);
+    sum += 0.25 * x * x;
+    if (radii.size() > MOST_GRAINS) throw TextureError("coverage with these grain sizes is more than 1e8 grains");
+  }
+  std::sort(radii.begin(), radii.end(), std::greater<double>());
+  return radii;
+}
+
+/* ---------------------------------------------------------------------- */
+
+static Texture place(double carrier_radius, const std::vector<double> &radii, double coverage, const BareCap &bare,
+                     std::mt19937_64 &random)
+{
+  Placement placement(-std::cos(bare.half_angle), carrier_radius, radii.front(), radii.back(), random);
+  double sum = 0.0;
+  for (const double radius : radii) {
+    if (!placement.place(radius))
+      throw TextureError("coverage " + number_text(coverage) + " cannot be placed: the monolayer is full at " +
+                         number_text(0.25 * sum / (carrier_radius * carrier_radius)) + " (" +
+                         std::to_string(placement.grains.size()) + " of " + std::to_string(radii.size()) + " grains)");
+    sum += radius * radius;
+  }
+  for (Grain &grain : placement.grains) turn_from_south(bare.axis, grain.n);
+  return {carrier_radius, bare, placement.grains};
+}
+
+/* ---------------------------------------------------------------------- */
+
+Texture Dust::place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare,
+                              uint64_t seed)
+{
+  check_sizes(carrier_radius, grain_radius, bare);
+  check_coverage(coverage);
+  const double wanted = grains_for_coverage(coverage, carrier_radius, grain_radius);
+  if (wanted < 1.0) throw TextureError("coverage " + number_text(coverage) + " is less than one grain");
+  if (wanted > MOST_GRAINS)
+    throw TextureError("coverage " + number_text(coverage) + " with this grain diameter is more than 1e8 grains");
+  std::mt19937_64 random(seed);
+  return place(carrier_radius, std::vector<double>(static_cast<size_t>(wanted), grain_radius), coverage, bare, random);
+}
+
+/* ---------------------------------------------------------------------- */
+
+Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &sizes, double coverage,
+                              const BareCap &bare, uint64_t seed)
+{
+  if (!(sizes.x50 > 0.0 && std::isfinite(sizes.x50)))
+    throw TextureError("median diameter " + number_text(sizes.x50) + " is not above 0");
+  const bool lognormal = sizes.kind == SizeDistribution::LOGNORMAL;
+  if (!(sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread)))
+    throw TextureError(lognormal ? "geometric standard deviation " + number_text(sizes.spread) + " is not above 1"
+                                 : "exponent " + number_text(sizes.spread) + " is not above 0");
+  check_sizes(carrier_radius, 0.5 * sizes.quantile(1.0 - CUT), bare);
+  check_coverage(coverage);
+  std::mt19937_64 random(seed);
+  return place(carrier_radius, draw_radii(sizes, 4.0 * coverage * carrier_radius * carrier_radius, random), coverage,
+               bare, random);
+}
