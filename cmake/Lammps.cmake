@@ -5,7 +5,7 @@
 # has too few headers), the same integer sizes and the same MPI.
 
 set(LAMMPS_SOURCE_DIR "$ENV{LAMMPS_SOURCE_DIR}" CACHE PATH "Top folder of an untouched LAMMPS tree (holds src/version.h)")
-set(LAMMPS_PREFIX "$ENV{LAMMPS_PREFIX}" CACHE PATH "Stock LAMMPS installed from that tree (bin/lmp); only tests use it")
+set(LAMMPS_PREFIX "$ENV{LAMMPS_PREFIX}" CACHE PATH "Stock LAMMPS installed from that tree (bin/lmp), linked beside lmp-dust")
 set(LAMMPS_SIZES smallbig CACHE STRING "Integer sizes of the host LAMMPS: smallbig (its default) or bigbig")
 set_property(CACHE LAMMPS_SIZES PROPERTY STRINGS smallbig bigbig)
 string(TOUPPER "${LAMMPS_SIZES}" DUST_SIZES)
@@ -48,3 +48,9 @@ add_library(lammps_headers INTERFACE)
 target_include_directories(lammps_headers SYSTEM INTERFACE "${LAMMPS_SOURCE_DIR}/src" "${LAMMPS_SOURCE_DIR}/src/GRANULAR"
                            "${LAMMPS_SOURCE_DIR}/src/PLUGIN" ${MPI_CXX_INCLUDE_DIRS})
 target_compile_definitions(lammps_headers INTERFACE ${MPI_CXX_COMPILE_DEFINITIONS})
+
+# build/bin/lmp, beside lmp-dust: where tests and users look for the stock LAMMPS
+if(EXISTS "${LAMMPS_PREFIX}/bin/lmp")
+  file(MAKE_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+  file(CREATE_LINK "${LAMMPS_PREFIX}/bin/lmp" "${CMAKE_BINARY_DIR}/bin/lmp" SYMBOLIC)
+endif()

@@ -1,18 +1,22 @@
 # One program for each file test_*.cpp of unittest/core (no LAMMPS) and unittest/styles (a LAMMPS instance: lmp-dust as
 # a library), and the fronts with which unittest/plugin shows that a plugin made for another LAMMPS is refused. What drives
 # programs from outside (unittest/{plugin,decks,mpi}, python/tests) is pytest's, run by ./bootstrap test.
+#
+# All of them are built by the target `tests` and by nothing else: whoever builds the package does not depend on them.
 
 find_package(GTest QUIET)
 if(NOT GTest_FOUND)
   message(FATAL_ERROR "GoogleTest is not installed: apt-get install libgtest-dev, or -D DUST_TESTS=OFF")
 endif()
 include(GoogleTest)
+add_custom_target(tests)
 
 # a file with a main() of its own keeps that
 function(add_gtest folder file)
   get_filename_component(name "${file}" NAME_WE)
   set(target "${folder}_${name}")
-  add_executable(${target} "${file}")
+  add_executable(${target} EXCLUDE_FROM_ALL "${file}")
+  add_dependencies(tests ${target})
   target_link_libraries(${target} PRIVATE ${ARGN} GTest::gtest_main)
   target_include_directories(${target} PRIVATE src src/core unittest unittest/${folder})
   target_compile_definitions(${target} PRIVATE DUST_INPUTS_DIR="${CMAKE_SOURCE_DIR}/lammps-inputs"
@@ -40,12 +44,6 @@ if(DUST_IN_TREE)
   endforeach()
 endif()
 
-# build/bin/lmp, beside lmp-dust: where tests and users look for the stock LAMMPS
-if(EXISTS "${LAMMPS_PREFIX}/bin/lmp")
-  file(MAKE_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
-  file(CREATE_LINK "${LAMMPS_PREFIX}/bin/lmp" "${CMAKE_BINARY_DIR}/bin/lmp" SYMBOLIC)
-endif()
-
 if(DUST_PLUGIN)
   if(DUST_SIZES STREQUAL "BIGBIG")
     set(other_sizes SMALLBIG)
@@ -54,5 +52,7 @@ if(DUST_PLUGIN)
   endif()
   add_front(other_sizes DUST_LAMMPS_VERSION=${LAMMPS_VERSION_NUMBER} LAMMPS_${other_sizes})
   add_front(other_version DUST_LAMMPS_VERSION=20240829 LAMMPS_${DUST_SIZES})
-  set_target_properties(other_sizes other_version PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/unittest")
+  set_target_properties(other_sizes other_version PROPERTIES EXCLUDE_FROM_ALL ON
+                        LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/unittest")
+  add_dependencies(tests other_sizes other_version)
 endif()

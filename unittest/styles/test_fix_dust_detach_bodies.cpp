@@ -3,6 +3,7 @@
 
 #include "deck.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 
