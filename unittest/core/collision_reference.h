@@ -1,10 +1,10 @@
-// The detachment functions against a reference that visits every grain at every step, and against closed forms.
+// Collisions by the rules of doc/fix_dust_detach.rst, "What a collision is" and "Criteria", for each grain at each step
 
-#include "detachment.h"
+#ifndef DUST_TEST_COLLISION_REFERENCE_H
+#define DUST_TEST_COLLISION_REFERENCE_H
 
-#include "hamaker.h"
-#include "jkr.h"
-#include "texture_placement.h"
+#include "collision.h"
+#include "reference_case.h"
 #include "vec.h"
 
 #include <gtest/gtest.h>
@@ -16,17 +16,8 @@
 
 using namespace Dust;
 
-namespace {
-
-constexpr double RP = 0.75e-3, RD = 10.0e-6;
-const Material CALCITE = {2700.0, surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9),
-                          combined_modulus(75.0e9, 0.3, 210.0e9, 0.3), 0.3};
-const double GRAIN_MASS = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0;
-const double HOLD = pull_off_force(CALCITE.gamma, effective_radius(RP, RD)) / GRAIN_MASS;
-
-
 // by an angle |v| about v (Rodrigues)
-Vec turned(const Vec &x, const Vec &v)
+inline Vec turned(const Vec &x, const Vec &v)
 {
   const double angle = size(v);
   if (angle == 0.0) return x;
@@ -49,8 +40,8 @@ struct Outcome {
   int steps = 0;    // until the end
 };
 
-// the equations as they stand on the physics page, in forces, for each grain at each step, in space
-Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria &criteria, const History &h)
+// the equations as they stand in the documentation, in forces, for each grain at each step, in space
+inline Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria &criteria, const History &h)
 {
   Outcome out;
   double reach = 0.0, least = 1.0e300, rolling = 1.0e300;
@@ -157,7 +148,7 @@ Outcome by_brute_force(const Texture &texture, const Material &m, const Criteria
   return out;
 }
 
-Quaternion orientation(const History &h)
+inline Quaternion orientation(const History &h)
 {
   Quaternion q;
   q.turn_by(&h.axis.x, 1.0);
@@ -165,10 +156,10 @@ Quaternion orientation(const History &h)
 }
 
 // the same by Collision; handed over to another one every `handover` steps
-Outcome by_collision(const Texture &texture, const DetachmentFunctions &functions, const History &h, int handover = 0)
+inline Outcome by_collision(const Texture &texture, const GrainTable &table, const History &h, int handover = 0)
 {
   Outcome out;
-  std::vector<uint64_t> attached = functions.all_attached();
+  std::vector<uint64_t> attached = table.all_attached();
   static Workspace work;    // shared, as what one collision leaves behind must not show in the next
   std::vector<Detachment> &detached = work.detached;
   Collision collision;
@@ -178,31 +169,33 @@ Outcome by_collision(const Texture &texture, const DetachmentFunctions &function
   for (size_t k = 0; !over; k++) {
     over = k == h.a.size() || collision.at_rest();
     if (over) {
-      collision.end(functions, &spin.x, attached.data(), work);
+      collision.end(table, &spin.x, attached.data(), work);
       out.steps = k;
     } else {
       const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
       const Motion motion = {{h.a[k].x, h.a[k].y, h.a[k].z}, {alpha.x, alpha.y, alpha.z}, {spin.x, spin.y, spin.z}};
-      collision.step(functions, motion, h.dt, attached.data(), work);
+      collision.step(table, motion, h.dt, attached.data(), work);
       spin = spin + h.dt * alpha;
     }
     for (const Detachment &d : detached) {
-      EXPECT_EQ(out.left.count(functions.grain(d.bit)), 0u) << "a grain left twice";
-      out.left[functions.grain(d.bit)] = {static_cast<int>(k), d.mode};
+      EXPECT_EQ(out.left.count(table.grain(d.bit)), 0u) << "a grain left twice";
+      out.left[table.grain(d.bit)] = {static_cast<int>(k), d.mode};
     }
     detached.clear();
     if (handover && k % handover == 0) {
       std::vector<double> buf(collision.packed_size());
-      collision.pack(buf.data());
+      Packer packer(buf.data());
+      collision.pack(packer);
       Collision other;
-      other.unpack(buf.data());
+      Unpacker unpacker(buf.data());
+      other.unpack(unpacker);
       collision.release(work);
       collision = std::move(other);
     }
   }
-  out.north = collision.lost_north(functions, attached.data());
-  out.sliding = collision.grains_that(SLIDING, functions, attached.data());
-  out.rolling = collision.grains_that(ROLLING, functions, attached.data());
+  out.north = collision.lost_north(table, attached.data());
+  out.sliding = collision.grains_that(SLIDING, table, attached.data());
+  out.rolling = collision.grains_that(ROLLING, table, attached.data());
   collision.release(work);
   int still = 0;
   for (uint64_t word : attached) still += __builtin_popcountll(word);
@@ -210,7 +203,7 @@ Outcome by_collision(const Texture &texture, const DetachmentFunctions &function
   return out;
 }
 
-void expect_same(const Outcome &a, const Outcome &b)
+inline void expect_same(const Outcome &a, const Outcome &b)
 {
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.left, b.left);
@@ -220,7 +213,7 @@ void expect_same(const Outcome &a, const Outcome &b)
 }
 
 // a few pulses in random directions: straight, turning, with several peaks and with kinks; with or without rotation
-History random_history(std::mt19937 &random, bool rotation)
+inline History random_history(std::mt19937 &random, bool rotation)
 {
   const auto u = [&]() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); };
   const auto direction = [&]() {
@@ -256,7 +249,7 @@ History random_history(std::mt19937 &random, bool rotation)
 }
 
 // a damped Hertzian impact along z in small steps
-History straight_impact(double speed, double restitution_damping)
+inline History straight_impact(double speed, double restitution_damping)
 {
   const double mass = 4.0 / 3.0 * M_PI * RP * RP * RP * 7700.0, k = 4.0 / 3.0 * 1.154e11 * std::sqrt(RP);
   History h;
@@ -275,153 +268,4 @@ History straight_impact(double speed, double restitution_damping)
   return h;
 }
 
-}    // namespace
-
-TEST(Detachment, SameGrainsAsBruteForceInTenThousandRandomCollisions)
-{
-  std::mt19937 random(1);
-  const Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);    // 211 grains: four patches, one not full
-  Material m = CALCITE;
-  m.gamma *=
-      std::pow(40.0e-6 / RD, 2) * effective_radius(RP, RD) / effective_radius(RP, 40.0e-6) * 4.0;    // hold as HOLD
-  int left = 0, normal = 0, rear = 0, at_rest = 0;
-  for (int i = 0; i < 10000; i++) {
-    Criteria criteria;
-    criteria.ibrahim = i % 4 == 3;
-    if (i % 7 == 5) criteria.tangential = Criteria::FRICTIONLESS;
-    if (i % 7 == 6) criteria.tangential = Criteria::OFF;
-    m.friction = i % 5 == 4 ? 0.0 : 0.3;
-    const DetachmentFunctions functions(texture, m, criteria);
-    const History h = random_history(random, i % 3);
-    const Outcome expected = by_brute_force(texture, m, criteria, h);
-    const Outcome found = by_collision(texture, functions, h);
-    expect_same(found, expected);
-    expect_same(by_collision(texture, functions, h, 17), expected);
-    if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
-    left += expected.left.size();
-    at_rest += expected.steps < static_cast<int>(h.a.size());
-    for (const auto &[grain, how] : expected.left) {
-      normal += how.second == NORMAL;
-      rear += how.second == TANGENTIAL;
-    }
-  }
-  EXPECT_GT(normal, 50000);    // the test tests something
-  EXPECT_GT(rear, 5000);
-  EXPECT_LT(left, 10000 * 200);
-  EXPECT_GT(at_rest, 100);
-}
-
-TEST(Detachment, SameGrainsAsBruteForceForGrainsOfAllSizes)
-{
-  std::mt19937 random(2);
-  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
-  for (Grain &g : texture.grains) g.radius *= 0.2 + 0.8 * std::uniform_real_distribution<double>()(random);
-  Material m = CALCITE;
-  m.gamma *= 16.0;
-  const DetachmentFunctions functions(texture, m, Criteria());
-  double mass = 0.0, expected_mass = 0.0;
-  for (int bit = 0; bit < functions.grains(); bit++) mass += functions.weight(bit) * functions.mean_mass();
-  for (const Grain &g : texture.grains) expected_mass += 4.0 / 3.0 * M_PI * std::pow(g.radius, 3) * m.density;
-  EXPECT_NEAR(mass, expected_mass, 1.0e-12 * expected_mass);
-  for (int i = 0; i < 500; i++) {
-    const History h = random_history(random, i % 2);
-    expect_same(by_collision(texture, functions, h), by_brute_force(texture, m, Criteria(), h));
-    if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
-  }
-}
-
-TEST(Detachment, ReferenceImpactsSameAsBruteForce)
-{
-  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  for (double speed : {0.3, 3.0, 8.0})
-    for (bool ibrahim : {false, true}) {
-      Criteria criteria;
-      criteria.ibrahim = ibrahim;
-      const History h = straight_impact(speed, 0.2733);
-      expect_same(by_collision(texture, DetachmentFunctions(texture, CALCITE, criteria), h),
-                  by_brute_force(texture, CALCITE, criteria, h));
-    }
-}
-
-TEST(Detachment, NormalModeOfAStraightImpactIsTheCapOfTheClosedForm)
-{
-  // 1/2 (1 - c/a_max) of the sphere less the bare cap; a texture of 4500 scatters by about 0.5 %, 20 of them by 0.1 %
-  const History h = straight_impact(2.0, 0.2733);
-  double peak = 0.0;
-  for (const Vec &a : h.a) peak = std::max(peak, a.z);
-  const double bare = 0.5 * (1.0 - std::cos(0.33));
-  const double expected = (0.5 * (1.0 - HOLD / peak) - bare) / (1.0 - bare);
-  double found = 0.0;
-  for (int seed = 1; seed <= 20; seed++) {
-    const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
-    found += by_collision(texture, DetachmentFunctions(texture, CALCITE, Criteria()), h).left.size() / 4500.0 / 20.0;
-  }
-  EXPECT_NEAR(found, expected, 0.003);
-}
-
-TEST(Detachment, FrictionlessRingOfTheClosedForm)
-{
-  // v_t0 = |Dv| sin(polar angle) above v_crit: the ring between asin(v_crit/|Dv|) and the equator
-  Criteria criteria;
-  criteria.tangential = Criteria::FRICTIONLESS;
-  const History h = straight_impact(8.0, 0.2733);
-  const double v_crit = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);
-  EXPECT_NEAR(v_crit, 10.05, 0.005);    // the physics page
-  const double bare = 0.5 * (1.0 - std::cos(0.33));
-  const double expected = 0.5 * std::sqrt(1.0 - std::pow(v_crit / dv, 2)) / (1.0 - bare);
-  double found = 0.0;
-  for (int seed = 1; seed <= 20; seed++) {
-    const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
-    found += by_collision(texture, DetachmentFunctions(texture, CALCITE, criteria), h).north / 4500.0 / 20.0;
-  }
-  EXPECT_NEAR(found, expected, 0.003);
-}
-
-TEST(Detachment, RearGrainsFlyOffWithWhatFrictionLeaves)
-{
-  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  const DetachmentFunctions functions(texture, CALCITE, Criteria());
-  const History h = straight_impact(9.0, 0.2733);
-  std::vector<uint64_t> attached = functions.all_attached();
-  Workspace work;
-  std::vector<Detachment> &detached = work.detached;
-  Collision collision;
-  const double spin[3] = {0.0, 0.0, 0.0};
-  collision.begin(Quaternion(), spin);
-  for (const Vec &a : h.a) collision.step(functions, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached.data(), work);
-  detached.clear();
-  ASSERT_TRUE(collision.end(functions, spin, attached.data(), work));
-  const double needed = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);
-  for (const Detachment &d : detached) {
-    const Grain &g = texture.grains[functions.grain(d.bit)];
-    const Vec v = {d.velocity[0], d.velocity[1], d.velocity[2]}, n = {g.n[0], g.n[1], g.n[2]};
-    EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);                   // along the surface,
-    EXPECT_LT(v.z, 0.0);                                    // towards the point of impact,
-    EXPECT_GT(size(v), needed);                             // faster than what adhesion can hold,
-    EXPECT_LT(size(v), dv * std::sqrt(1.0 - n.z * n.z));    // slower than without friction
-  }
-}
-
-TEST(Detachment, NothingLeavesBelowThePullOffForce)
-{
-  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  const DetachmentFunctions functions(texture, CALCITE, Criteria());
-  History h;
-  h.dt = 1.0e-9;
-  h.a.assign(100, {0.0, 0.0, 0.9999 * HOLD});
-  h.before = {0.0, 0.0, -0.01};
-  h.after = {0.0, 0.0, 0.003};
-  EXPECT_TRUE(by_collision(texture, functions, h).left.empty());
-  h.a.assign(100, {0.0, 0.0, 1.5 * HOLD});
-  EXPECT_FALSE(by_collision(texture, functions, h).left.empty());
-}
-
-TEST(Detachment, EqualGrainsWeighExactlyOne)
-{
-  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  const DetachmentFunctions functions(texture, CALCITE, Criteria());
-  for (int bit = 0; bit < functions.grains(); bit++) ASSERT_EQ(functions.weight(bit), 1.0);
-  EXPECT_NEAR(functions.mean_mass(), 1.1310e-11, 0.5e-15);    // the physics page
-  EXPECT_NEAR(functions.least_hold(), 1.330e5, 0.5e2);
-  EXPECT_EQ(functions.words(), 71);
-}
+#endif
