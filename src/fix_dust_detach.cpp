@@ -25,16 +25,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
-
-static double distance2(const double *a, const double *b)
-{
-  const double e[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return Dust::dot(e, e);
-}
 
 static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grains is not in the carrier's yet
 
@@ -43,19 +36,19 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
     attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), steps(0.0), began(nullptr),
-    newcomers(true), mine{}, open_windows(0), too_soft(1.0), warned(false), exchange_room(0)
+    newcomers(true), mine{}, shedding(lmp, settings.emit), too_soft(1.0), warned(false), exchange_room(0)
 {
   collisions.work.locate = settings.keep_rows || settings.lose_mass;
   check_order();    // of what is there already; the rest before a run
 
   scalar_flag = vector_flag = global_freq = 1;
-  size_vector = 14;
+  size_vector = DetachVector::SIZE;
   extscalar = extvector = 0;
   peratom_flag = peratom_freq = 1;
-  size_peratom_cols = NCOLUMNS;
+  size_peratom_cols = DetachAtom::SIZE;
   local_flag = local_freq = 1;
   size_local_rows = 0;
-  size_local_cols = NROW;
+  size_local_cols = DetachRow::SIZE;
   restart_global = restart_peratom = create_attribute = 1;
   maxexchange_dynamic = 1;
   force_reneighbor = settings.lose_mass;    // carriers get lighter and atoms are created where neighbour lists are new
@@ -229,7 +222,7 @@ void FixDustDetach::adopt()
                  atom->tag[i], 2.0 * atom->radius[i], 2.0 * carrier_radius);
     state[i] = FREE_FLIGHT;
     std::copy(functions->all_attached().begin(), functions->all_attached().end(), attached[i]);
-    array_atom[i][ATTACHED] = functions->grains();
+    array_atom[i][DetachAtom::ATTACHED] = functions->grains();
     mine.initial += functions->grains();
     if (orientation) orientation[i] = settings.orientation(atom->tag[i]);
     began[i] = NOT_WEIGHED;
@@ -307,9 +300,9 @@ void FixDustDetach::post_force(int /*vflag*/)
   }
   if (spins && update->ntimestep % TURN_EVERY == 0) turn();
   if (update->ntimestep % settings.every != 0) return;
-  if (open_windows) close_window();
+  if (rows.is_open()) close_window();
   if (settings.lose_mass) {
-    int any = !losses.empty();
+    int any = !shedding.of_this_rank().empty();
     MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
     if (any) next_reneighbor = update->ntimestep + 1;
   }
@@ -380,7 +373,7 @@ void FixDustDetach::finish_collision(int i, int next)
   const Dust::Motion motion = motion_of(i);
   if (collision.end(*functions, motion.spin, attached[i], collisions.work)) record(i);
   const double peak = collision.peak_acceleration();
-  array_atom[i][PEAK_ACCELERATION] = peak;
+  array_atom[i][DetachAtom::PEAK_ACCELERATION] = peak;
   mine.collisions += 1.0;
   mine.north += collision.lost_north(*functions, attached[i]);
   mine.sliding += collision.grains_that(Dust::SLIDING, *functions, attached[i]);
@@ -402,7 +395,7 @@ void FixDustDetach::finish_collision(int i, int next)
 void FixDustDetach::leave_contact(int i)
 {
   state[i] = FREE_FLIGHT;
-  array_atom[i][CONTACT_TIME] = (steps - began[i]) * settings.stiffen_time * update->dt;
+  array_atom[i][DetachAtom::CONTACT_TIME] = (steps - began[i]) * settings.stiffen_time * update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -414,7 +407,8 @@ void FixDustDetach::spin_off(int i)
   const Dust::Motion motion = motion_of(i);
   if (!functions->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
   begin_collision(i, motion);
-  if (collisions[state[i]].step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work)) record(i);
+  if (collisions[state[i]].step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work))
+    record(i);
   collisions.give_back(state[i]);
   state[i] = FREE_FLIGHT;
 }
@@ -452,57 +446,38 @@ void FixDustDetach::record(int i)
     const double place[3] = {x[0] + distance * n[0], x[1] + distance * n[1], x[2] + distance * n[2]};
     const double speed[3] = {velocity[0] + w[0], velocity[1] + w[1], velocity[2] + w[2]};
     if (settings.keep_rows)
-      events.push_back({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
-                        place[0], place[1], place[2], speed[0], speed[1], speed[2]});
+      rows.add({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
+                place[0], place[1], place[2], speed[0], speed[1], speed[2]});
     if (settings.lose_mass) {
       const double *spin = atom->omega[i];
-      losses.push_back({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(),
-                        grain.radius, steps, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0],
-                        spin[1], spin[2]});
+      shedding.add({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(), grain.radius,
+                    steps, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1], spin[2]});
     }
   }
   mine.weight += lost;
-  array_atom[i][ATTACHED] -= double(collisions.work.detached.size());
-  array_atom[i][MASS] += lost * functions->mean_mass();
+  array_atom[i][DetachAtom::ATTACHED] -= double(collisions.work.detached.size());
+  array_atom[i][DetachAtom::MASS] += lost * functions->mean_mass();
   window_mass[i] += lost * functions->mean_mass();
   collisions.work.detached.clear();
-  open_windows = 2;    // this one, and the next to show that nothing more came
+  rows.open();
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixDustDetach::close_window()
 {
-  open_windows--;
   for (int i = 0; i < atom->nlocal; i++) {
-    array_atom[i][WINDOW_MASS] = window_mass[i];
+    array_atom[i][DetachAtom::WINDOW_MASS] = window_mass[i];
     window_mass[i] = 0.0;
   }
-  rows.swap(events);
-  events.clear();
+  rows.close();
   show_rows();
 }
 
-// hands the rows to LAMMPS; as they are not empty, they are to be replaced by those of the next windows
 void FixDustDetach::show_rows()
 {
-  row_pointers.clear();
-  for (auto &row : rows) row_pointers.push_back(row.data());
-  array_local = row_pointers.data();
-  size_local_rows = static_cast<int>(rows.size());
-  if (!rows.empty() || !events.empty()) open_windows = std::max(open_windows, events.empty() ? 1 : 2);
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixDustDetach::Sums FixDustDetach::sum_up() const
-{
-  Sums local = {mine, 0.0}, sums;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && state[i] != NO_CARRIER) local.attached += array_atom[i][ATTACHED];
-  static_assert(sizeof(Sums) % sizeof(double) == 0, "Sums must hold doubles only");
-  MPI_Allreduce(&local, &sums, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
-  return sums;
+  array_local = rows.pointers();
+  size_local_rows = rows.size();
 }
 
 /* ----------------------------------------------------------------------
@@ -522,39 +497,48 @@ template <typename Question> double FixDustDetach::sum_under_way(Question questi
 
 double FixDustDetach::compute_scalar()
 {
-  const Sums s = sum_up();
-  return s.totals.initial > 0.0 ? s.totals.weight / s.totals.initial : 0.0;
+  const DetachTotals t = mine.sum(world);
+  return t.initial > 0.0 ? t.weight / t.initial : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */
 
 double FixDustDetach::compute_vector(int n)
 {
-  const Sums s = sum_up();
-  const Totals &t = s.totals;
+  using namespace DetachVector;
+  const DetachTotals t = mine.sum(world);
   const double grain_mass = functions ? functions->mean_mass() : 0.0;
   const auto met = [this](Dust::Mode mode) {
     return sum_under_way([=](const Dust::Collision &c, int i) { return c.grains_that(mode, *functions, attached[i]); });
   };
   switch (n) {
-    case 0: return t.initial;
-    case 1: return s.attached;
-    case 2: return t.modes[Dust::NORMAL];
-    case 3: return t.modes[Dust::TANGENTIAL];
-    case 4: return std::accumulate(t.modes, t.modes + Dust::NMODES, 0.0) - compute_vector(5);
-    case 5:
+    case INITIAL_GRAINS: return t.initial;
+    case ATTACHED_GRAINS: return attached_grains();
+    case NORMAL: return t.modes[Dust::NORMAL];
+    case TANGENTIAL: return t.modes[Dust::TANGENTIAL];
+    case SOUTH: return t.detached() - compute_vector(NORTH);
+    case NORTH:
       return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
                return c.lost_north(*functions, attached[i]);    // with the velocity so far
              });
-    case 6: return t.weight * grain_mass;
-    case 7: return t.initial * grain_mass;
-    case 8: return t.collisions;
-    case 9: return t.sliding + met(Dust::SLIDING);
-    case 10: return t.rolling + met(Dust::ROLLING);
-    case 11: return t.modes[Dust::SLIDING];
-    case 12: return t.modes[Dust::ROLLING];
+    case DETACHED_MASS: return t.weight * grain_mass;
+    case INITIAL_MASS: return t.initial * grain_mass;
+    case COLLISIONS: return t.collisions;
+    case MET_SLIDING: return t.sliding + met(Dust::SLIDING);
+    case MET_ROLLING: return t.rolling + met(Dust::ROLLING);
+    case SLIDING: return t.modes[Dust::SLIDING];
+    case ROLLING: return t.modes[Dust::ROLLING];
     default: return t.no_room;
   }
+}
+
+double FixDustDetach::attached_grains() const
+{
+  double sum = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && state[i] != NO_CARRIER) sum += array_atom[i][DetachAtom::ATTACHED];
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
+  return sum;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -562,9 +546,9 @@ double FixDustDetach::compute_vector(int n)
 double FixDustDetach::memory_usage()
 {
   const double words = functions ? functions->words() : 0;
-  const double numbers = words + NCOLUMNS + 2 + orientation_size();
+  const double numbers = words + DetachAtom::SIZE + 2 + orientation_size();
   const double bytes = double(atom->nmax) * (sizeof(int) + numbers * sizeof(double)) + collisions.memory_usage();
-  return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]) + losses.capacity() * sizeof(Loss);
+  return bytes + rows.memory_usage() + shedding.memory_usage();
 }
 
 /* ----------------------------------------------------------------------
@@ -585,147 +569,7 @@ void FixDustDetach::pre_exchange()
 
 void FixDustDetach::shed()
 {
-  const std::vector<Loss> all = all_losses();
-  losses.clear();
-  if (all.empty()) return;
-
-  // on which atom of this rank each was
-  std::vector<int> carrier(all.size(), -1);
-  const auto by_carrier = [](const Loss &a, const Loss &b) { return a[CARRIER] < b[CARRIER]; };
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || state[i] == NO_CARRIER) continue;
-    Loss key = {};
-    key[CARRIER] = double(atom->tag[i]);
-    const auto range = std::equal_range(all.begin(), all.end(), key, by_carrier);
-    for (auto loss = range.first; loss != range.second; ++loss) carrier[loss - all.begin()] = i;
-  }
-  std::vector<char> leaves(all.size(), 0);
-  if (settings.emit) {
-    find_room(all, carrier, leaves);
-    MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_CHAR, MPI_MAX, world);
-    share_room(all, leaves);
-  }
-
-  for (size_t first = 0, last; first < all.size(); first = last) {
-    const int i = carrier[first];
-    double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};    // of what leaves carrier i
-    for (last = first; last < all.size() && all[last][CARRIER] == all[first][CARRIER]; last++) {
-      if (i >= 0 && settings.emit && !leaves[last]) mine.no_room += 1.0;
-      if (settings.emit && !leaves[last]) continue;
-      mass += all[last][LOSS_MASS];
-      for (int d = 0; d < 3; d++) momentum[d] += all[last][LOSS_MASS] * all[last][LOSS_V + d];
-    }
-    if (i < 0) continue;
-    const double rest = atom->rmass[i] - mass;
-    for (int d = 0; d < 3; d++) atom->v[i][d] = (atom->rmass[i] * atom->v[i][d] - momentum[d]) / rest;
-    atom->rmass[i] = rest;
-  }
-  if (!settings.emit) return;
-  tagint tag = DustAtoms::highest_tag(lmp);
-  DustAtoms atoms(lmp);
-  for (size_t k = 0; k < all.size(); k++) {
-    if (!leaves[k]) continue;
-    double x[3];
-    place_of(all[k], x);
-    atoms.create(settings.emit, ++tag, x, all[k][LOSS_RADIUS], all[k][LOSS_MASS], &all[k][LOSS_V], &all[k][LOSS_SPIN]);
-  }
-  atoms.finish();
-}
-
-// in free flight since it left, as it leaves its carrier's mass now
-void FixDustDetach::place_of(const Loss &loss, double *x) const
-{
-  const double flight = (steps - loss[LOSS_STEP]) * update->dt;
-  for (int d = 0; d < 3; d++) x[d] = loss[LOSS_X + d] + flight * loss[LOSS_V + d];
-}
-
-// of all ranks and on all, in an order that does not depend on their number
-std::vector<FixDustDetach::Loss> FixDustDetach::all_losses() const
-{
-  std::vector<Loss> all = dust_gather(losses, ALL_RANKS, world);
-  std::sort(all.begin(), all.end());    // by carrier, then by grain
-  return all;
-}
-
-/* ----------------------------------------------------------------------
-   grains of this rank's carriers that would overlap no other atom and lie in the box; walls are not known here
-------------------------------------------------------------------------- */
-
-void FixDustDetach::find_room(const std::vector<Loss> &all, const std::vector<int> &carrier,
-                              std::vector<char> &leaves) const
-{
-  // atoms along x, and those that some grain of a carrier could touch
-  std::vector<int> along(atom->nlocal + atom->nghost), near;
-  std::iota(along.begin(), along.end(), 0);
-  std::sort(along.begin(), along.end(), [this](int a, int b) { return atom->x[a][0] < atom->x[b][0]; });
-  const double largest = along.empty() ? 0.0 : *std::max_element(atom->radius, atom->radius + along.size());
-  for (size_t first = 0, last; first < all.size(); first = last) {
-    for (last = first + 1; last < all.size() && carrier[last] == carrier[first]; last++) {
-    }
-    const int i = carrier[first];
-    if (i < 0) continue;
-
-    const double *centre = atom->x[i];
-    std::vector<std::array<double, 3>> places(last - first);    // next to the carrier, whose image may have changed
-    double reach = 0.0;
-    for (size_t k = first; k < last; k++) {
-      double x[3], *place = places[k - first].data();
-      place_of(all[k], x);
-      domain->closest_image(centre, x, place);
-      reach = std::max(reach, std::sqrt(distance2(centre, place)) + all[k][LOSS_RADIUS]);
-    }
-    const auto touches = [&](int j, const double *x, double radius) {
-      const double sum = atom->radius[j] + radius;
-      return distance2(atom->x[j], x) < sum * sum;
-    };
-    near.clear();
-    const double low = centre[0] - reach - largest, high = centre[0] + reach + largest;
-    auto j = std::lower_bound(along.begin(), along.end(), low, [this](int a, double x) { return atom->x[a][0] < x; });
-    for (; j != along.end() && atom->x[*j][0] <= high; ++j)
-      if (atom->tag[*j] != atom->tag[i] && touches(*j, centre, reach)) near.push_back(*j);
-
-    for (size_t k = first; k < last; k++) {
-      const double *x = places[k - first].data();
-      const bool room = !DustAtoms::beyond_fixed_border(lmp, x) && std::none_of(near.begin(), near.end(), [&](int j) {
-        return touches(j, x, all[k][LOSS_RADIUS]);
-      });
-      leaves[k] = room;
-    }
-  }
-}
-
-/* ----------------------------------------------------------------------
-   of grains that would overlap each other the first stays in the list: the same on all ranks. Neighbours along x.
-------------------------------------------------------------------------- */
-
-void FixDustDetach::share_room(const std::vector<Loss> &all, std::vector<char> &leaves) const
-{
-  struct Place {
-    double x[3];
-    size_t number;
-  };
-  std::vector<Place> places;
-  double largest = 0.0;
-  for (size_t k = 0; k < all.size(); k++) {
-    if (!leaves[k]) continue;
-    Place place;
-    place.number = k;
-    place_of(all[k], place.x);
-    domain->remap(place.x);
-    places.push_back(place);
-    largest = std::max(largest, all[k][LOSS_RADIUS]);
-  }
-  std::sort(places.begin(), places.end(), [](const Place &a, const Place &b) { return a.x[0] < b.x[0]; });
-  std::vector<std::pair<size_t, size_t>> pairs;    // that overlap, the first first
-  for (size_t a = 0; a < places.size(); a++)
-    for (size_t b = a + 1; b < places.size() && places[b].x[0] - places[a].x[0] < 2.0 * largest; b++) {
-      const size_t i = places[a].number, j = places[b].number;
-      const double sum = all[i][LOSS_RADIUS] + all[j][LOSS_RADIUS];
-      if (distance2(places[a].x, places[b].x) < sum * sum) pairs.emplace_back(std::minmax(i, j));
-    }
-  std::sort(pairs.begin(), pairs.end());
-  for (const auto &[first, second] : pairs)
-    if (leaves[first]) leaves[second] = 0;
+  mine.no_room += shedding.shed(steps, [this](int i) { return (atom->mask[i] & groupbit) && state[i] != NO_CARRIER; });
 }
 
 /* ----------------------------------------------------------------------
@@ -767,7 +611,7 @@ void FixDustDetach::grow_arrays(int nmax)
   memory->grow(state, nmax, "dust/detach:state");
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
   memory->grow(began, nmax, "dust/detach:began");
-  memory->grow(array_atom, nmax, NCOLUMNS, "dust/detach:array_atom");
+  memory->grow(array_atom, nmax, DetachAtom::SIZE, "dust/detach:array_atom");
   if (oriented()) memory->grow(orientation, nmax, "dust/detach:orientation");
   if (settings.rotation) memory->grow(angle, nmax, 3, "dust/detach:angle");
   if (functions) memory->grow(attached, nmax, functions->words(), "dust/detach:attached");
@@ -780,7 +624,7 @@ void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
   state[j] = state[i];
   window_mass[j] = window_mass[i];
   began[j] = began[i];
-  std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), array_atom[j]);
+  std::copy_n(array_atom[i], static_cast<int>(DetachAtom::SIZE), array_atom[j]);
   if (orientation) orientation[j] = orientation[i];
   if (angle) std::copy_n(angle[i], 3, angle[j]);
   if (functions) std::copy_n(attached[i], functions->words(), attached[j]);
@@ -793,7 +637,7 @@ void FixDustDetach::set_arrays(int i)
   state[i] = NO_CARRIER;
   window_mass[i] = began[i] = 0.0;
   if (angle) std::fill_n(angle[i], 3, 0.0);
-  std::fill_n(array_atom[i], static_cast<int>(NCOLUMNS), 0.0);
+  std::fill_n(array_atom[i], static_cast<int>(DetachAtom::SIZE), 0.0);
   newcomers = true;
 }
 
@@ -804,7 +648,7 @@ void FixDustDetach::set_arrays(int i)
 
 int FixDustDetach::fixed_size() const
 {
-  return 2 + NCOLUMNS + 2 + orientation_size() + (functions ? functions->words() : 0);
+  return 2 + DetachAtom::SIZE + 2 + orientation_size() + (functions ? functions->words() : 0);
 }
 
 bool FixDustDetach::oriented() const { return settings.rotation || !settings.same_orientation(); }
@@ -842,7 +686,7 @@ int FixDustDetach::pack(int i, double *buf) const
   double *p = buf;
   *p++ = words;
   *p++ = state[i] >= 0 ? 0 : state[i];
-  p = std::copy_n(array_atom[i], static_cast<int>(NCOLUMNS), p);
+  p = std::copy_n(array_atom[i], static_cast<int>(DetachAtom::SIZE), p);
   *p++ = window_mass[i];
   *p++ = began[i];
   if (orientation) p = std::copy_n(orientation[i].q, 4, p);
@@ -866,11 +710,11 @@ void FixDustDetach::unpack(int i, const double *buf)
   if (!functions || words != functions->words())
     error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
   state[i] = static_cast<int>(*p++);
-  std::copy_n(p, static_cast<int>(NCOLUMNS), array_atom[i]);
-  p += NCOLUMNS;
+  std::copy_n(p, static_cast<int>(DetachAtom::SIZE), array_atom[i]);
+  p += DetachAtom::SIZE;
   window_mass[i] = *p++;
   began[i] = *p++;
-  open_windows = 2;
+  rows.open();
   if (orientation) std::copy_n(p, 4, orientation[i].q);
   if (angle) std::copy_n(p + 4, 3, angle[i]);
   p += orientation_size();
@@ -905,30 +749,30 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 void FixDustDetach::write_restart(FILE *fp)
 {
   std::vector<double> list = {texture_checksum, double(orientation_size()), double(settings.lose_mass), steps};
-  Totals total;
-  MPI_Reduce(&mine, &total, sizeof(Totals) / sizeof(double), MPI_DOUBLE, MPI_SUM, 0, world);
-  const auto *p = reinterpret_cast<const double *>(&total);
-  list.insert(list.end(), p, p + sizeof(Totals) / sizeof(double));
+  const DetachTotals total = mine.sum(world);
+  list.insert(list.end(), total.numbers(), total.numbers() + DetachTotals::SIZE);
   // LAMMPS counts the bytes of a fix's restart data as int
   constexpr double MOST = 2.0e9;
-  double bytes[2] = {double(events.size() + rows.size()) * sizeof(Row), double(losses.size()) * sizeof(Loss)};
+  double bytes[2] = {double(rows.present().size() + rows.last().size()) * sizeof(DetachmentRows::Row),
+                     double(shedding.of_this_rank().size()) * sizeof(DustShedding::Loss)};
   MPI_Allreduce(MPI_IN_PLACE, bytes, 2, MPI_DOUBLE, MPI_SUM, world);
   if (bytes[1] > MOST)
     error->all(
         FLERR,
         "Fix dust/detach {}: a restart file cannot hold the {} grains that are to leave their carriers' mass: use a "
         "smaller every",
-        id, bytes[1] / sizeof(Loss));
+        id, bytes[1] / sizeof(DustShedding::Loss));
   const bool fits = bytes[0] + bytes[1] < MOST;
   if (!fits && comm->me == 0)
     error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id,
-                   bytes[0] / sizeof(Row));
+                   bytes[0] / sizeof(DetachmentRows::Row));
   const auto append = [&list](const auto &records) {
     list.push_back(double(records.size()));
     for (const auto &record : records) list.insert(list.end(), record.begin(), record.end());
   };
-  for (const auto *window : {&events, &rows}) append(fits ? dust_gather(*window, 0, world) : std::vector<Row>());
-  append(all_losses());
+  for (const auto *window : {&rows.present(), &rows.last()})
+    append(fits ? dust_gather(*window, 0, world) : std::vector<DetachmentRows::Row>());
+  append(shedding.of_all_ranks());
   if (comm->me == 0) {
     const int size = static_cast<int>(list.size() * sizeof(double));
     fwrite(&size, sizeof(int), 1, fp);
@@ -949,21 +793,22 @@ void FixDustDetach::restart(char *buf)
     error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}", *p != 0.0 ? "yes" : "no");
   p++;
   steps = *p++;
-  mine = Totals{};
-  events.clear();
-  rows.clear();
-  losses.clear();
+  mine = DetachTotals{};
+  std::vector<DetachmentRows::Row> present, last;
+  std::vector<DustShedding::Loss> losses;
   if (comm->me == 0) {
-    std::memcpy(&mine, p, sizeof(Totals));
-    p += sizeof(Totals) / sizeof(double);
+    mine = DetachTotals::from(p);
+    p += DetachTotals::SIZE;
     const auto take = [&p](auto &records) {
       records.resize(static_cast<size_t>(*p++));
       std::memcpy(records.data(), p, records.size() * sizeof(records[0]));
       p += records.size() * sizeof(records[0]) / sizeof(double);
     };
-    for (auto *window : {&events, &rows}) take(*window);
+    for (auto *window : {&present, &last}) take(*window);
     take(losses);
   }
+  rows.set(std::move(present), std::move(last));
+  shedding.set(std::move(losses));
   show_rows();
   newcomers = true;
 }

@@ -15,8 +15,10 @@ FixStyle(dust/detach,FixDustDetach);
 
 #include "core/collision_pool.h"
 #include "detach_settings.h"
+#include "detach_totals.h"
+#include "detachment_rows.h"
+#include "dust_shedding.h"
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -73,8 +75,7 @@ class FixDustDetach : public Fix {
   double *window_mass;              // lost in the window that is not complete yet
   double steps;                     // since the fix is there
   double *began;                    // of them, when the present contact did
-  enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, NCOLUMNS };    // of array_atom
-  bool newcomers;    // atoms were added that may be carriers
+  bool newcomers;                   // atoms were added that may be carriers
   void adopt();
   void weigh();
 
@@ -90,40 +91,19 @@ class FixDustDetach : public Fix {
   void leave_contact(int);
   void spin_off(int);
 
-  // what this rank has counted since the start, or since it read a restart file; whole numbers but for weight, the
-  // mass lost in mean grain masses, which is one for equal grains
-  struct Totals {
-    double initial, modes[Dust::NMODES], weight, collisions;
-    double north, sliding, rolling;    // of the collisions that are over
-    double no_room;                    // grains that were not emitted
-  } mine;
-  struct Sums {    // over all ranks
-    Totals totals;
-    double attached;
-  };
-  Sums sum_up() const;
+  DetachTotals mine;    // of this rank
+  double attached_grains() const;
   template <typename Question> double sum_under_way(Question) const;
 
   // detachments
-  static constexpr int NROW = 11;
-  using Row = std::array<double, NROW>;
-  std::vector<Row> events, rows;    // of this window and of the last complete one
-  std::vector<double *> row_pointers;
+  DetachmentRows rows;
   void record(int);
-  int open_windows;    // windows to be closed until all of window_mass and its column are 0 again
   void close_window();
   void show_rows();
 
-  // detached grains whose mass is still in their carrier's: they leave it at the end of the window
-  enum { CARRIER, GRAIN, LOSS_MASS, LOSS_RADIUS, LOSS_STEP, LOSS_X, LOSS_V = LOSS_X + 3, LOSS_SPIN = LOSS_V + 3 };
-  static constexpr int NLOSS = LOSS_SPIN + 3;
-  using Loss = std::array<double, NLOSS>;
-  std::vector<Loss> losses;
+  // mass and grains that are still to leave
+  DustShedding shedding;
   void shed();
-  std::vector<Loss> all_losses() const;
-  void place_of(const Loss &, double *) const;
-  void find_room(const std::vector<Loss> &, const std::vector<int> &, std::vector<char> &) const;
-  void share_room(const std::vector<Loss> &, std::vector<char> &) const;
 
   // contacts of the deck that are softer than `stiffen` says
   double too_soft;    // factor of the inertia, or 1

@@ -3,6 +3,7 @@
 #ifndef DUST_UNITTEST_DECK_H
 #define DUST_UNITTEST_DECK_H
 
+#include "detach_columns.h"
 #include "library.h"
 
 #include <gtest/gtest.h>
@@ -89,7 +90,7 @@ class Deck {
   std::vector<double> vector() const
   {
     std::vector<double> v;
-    for (int n = 0; n <= 13; n++) v.push_back(global(n));
+    for (int n = 0; n < LAMMPS_NS::DetachVector::SIZE; n++) v.push_back(global(n));
     return v;
   }
   // columns of the fix for the atom with this ID
@@ -97,14 +98,14 @@ class Deck {
   {
     auto **array = static_cast<double **>(lammps_extract_fix(lmp, "dust", LMP_STYLE_ATOM, LMP_TYPE_ARRAY, 0, 0));
     const double *row = array[local(id)];
-    return {row, row + 5};
+    return {row, row + LAMMPS_NS::DetachAtom::SIZE};
   }
   std::vector<std::vector<double>> events() const
   {
     const int rows = *static_cast<int *>(lammps_extract_fix(lmp, "dust", LMP_STYLE_LOCAL, LMP_SIZE_ROWS, 0, 0));
     auto **array = static_cast<double **>(lammps_extract_fix(lmp, "dust", LMP_STYLE_LOCAL, LMP_TYPE_ARRAY, 0, 0));
     std::vector<std::vector<double>> all;
-    for (int k = 0; k < rows; k++) all.emplace_back(array[k], array[k] + 11);
+    for (int k = 0; k < rows; k++) all.emplace_back(array[k], array[k] + LAMMPS_NS::DetachRow::SIZE);
     return all;
   }
   const double *atom(const char *name, int id) const

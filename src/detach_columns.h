@@ -1,0 +1,46 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_DUST_DETACH_COLUMNS_H
+#define LMP_DUST_DETACH_COLUMNS_H
+
+/* The numbers that fix dust/detach puts out, by name, counted from 0; a deck counts them from 1. The tables of
+   doc/fix_dust_detach.rst say what they are. A test reads this file: one name a line, the number of them last. */
+
+namespace LAMMPS_NS {
+
+// of the global vector
+namespace DetachVector {
+enum {
+  INITIAL_GRAINS,
+  ATTACHED_GRAINS,
+  NORMAL,
+  TANGENTIAL,
+  SOUTH,
+  NORTH,
+  DETACHED_MASS,
+  INITIAL_MASS,
+  COLLISIONS,
+  MET_SLIDING,
+  MET_ROLLING,
+  SLIDING,
+  ROLLING,
+  NO_ROOM,
+  SIZE
+};
+}
+
+// columns of the per-atom array
+namespace DetachAtom {
+enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, SIZE };
+}
+
+// columns of the local array
+namespace DetachRow {
+enum { STEP, CARRIER, GRAIN, MODE, DIAMETER, X, Y, Z, VX, VY, VZ, SIZE };
+}
+
+}    // namespace LAMMPS_NS
+
+#endif
