@@ -68,7 +68,7 @@ void Keywords::read(const std::vector<Keyword> &table, int first)
     if (found == table.end()) {
       std::vector<std::string> known;
       for (const Keyword &k : table) known.push_back(k.name);
-      error->all(FLERR, "{} has no keyword {}: it must be {}", command, keyword, alternatives(known));
+      error->all(FLERR, "{} has no keyword {}: use {}", command, keyword, alternatives(known));
     }
     if (given[found - table.begin()] && !found->repeats) refuse("is given twice");
     given[found - table.begin()] = true;

@@ -94,11 +94,11 @@ TEST(FixDustDetachWords, MissingValues)
 
 TEST(FixDustDetachWords, UnknownKeywordsGetTheListOfAll)
 {
-  const std::string message = error("colour red " + all_but(KEYWORDS.size()));
+  std::string message = error("colour red " + all_but(KEYWORDS.size()));
+  message.resize(message.find('\n'));    // LAMMPS repeats the command below
   EXPECT_NE(message.find("no keyword colour"), std::string::npos) << message;
   for (const auto &[keyword, values] : KEYWORDS)
     EXPECT_NE(message.find(" " + keyword), std::string::npos) << keyword << " -> " << message;
-  EXPECT_EQ(message.find('\n'), message.size() - 1) << message;
 }
 
 TEST(FixDustDetachWords, WrongInputIsNamed)
