@@ -138,6 +138,7 @@ def test_a_resolved_impact(command, tmp_path):
         (("--method", "both"), "--method: unknown choice 'both'; allowed: functions, resolved"),
         (("--method", "resolved", "--timestep", "1e-8"), "--timestep: 1e-08 s does not resolve the contact of a grain"),
         (("--method", "resolved", "--grain-diameter", "2e-6"), "in a resolved run at most 100000"),
+        (("--method", "resolved", "--no-rotation"), "--rotation: false is for the functions"),
         (("--picture", "carrier.txt"), "--picture: carrier.txt; allowed: a file name that ends in .png"),
         (("--picture", "no/such/carrier.png"), "--picture: there is no folder no/such"),
         (("--colour", "red"), "unrecognized arguments: --colour red"),

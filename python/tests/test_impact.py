@@ -61,6 +61,12 @@ def test_out_of_range(name, value, allowed):
     assert "\n" not in message
 
 
+def test_a_resolved_run_follows_the_spin():
+    assert Impact(speed=8.0, method="resolved").rotation
+    with pytest.raises(InvalidInput, match=r"--rotation: false .* allowed: true"):
+        Impact(speed=8.0, method="resolved", rotation=False)
+
+
 def test_a_grain_oscillates_in_a_quarter_of_a_microsecond():
     # 2 pi sqrt(m_d/k_0) with m_d 1.1310e-11 kg, E* 6.073e10 Pa and a_0 90.18 nm
     expected = 2 * math.pi * math.sqrt(1.1310e-11 / (1.2 * 6.073e10 * 90.18e-9))

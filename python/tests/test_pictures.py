@@ -91,9 +91,9 @@ def test_four_moments_of_a_resolved_impact(tmp_path, resolved_frames, resolved_r
 
 def test_the_picture_of_a_resolved_impact_is_that_of_its_frames(tmp_path, monkeypatch, resolved_impact):
     drawn = []
-    monkeypatch.setattr(module, "draw_moments", lambda frames, result, path: drawn.append((frames.is_file(), result)))
+    monkeypatch.setattr(module, "_draw_frames", lambda frames, result, path: drawn.append((len(frames), result)))
     result = draw_impact(resolved_impact, tmp_path / "moments.png")
-    assert drawn == [(True, result)]
+    assert drawn == [(4, result)]
     assert result.method == "resolved"
 
 

@@ -156,12 +156,6 @@ def test_parameters_of_a_resolved_run_reach_lammps(resolved_impact, resolved_res
         assert result.peak_acceleration != resolved_result.peak_acceleration, change
 
 
-def test_a_resolved_run_follows_the_spin_whatever_is_asked_for(resolved_impact, resolved_result):
-    result = run(replace(resolved_impact, rotation=False))
-    assert result.dispersion_ratio == resolved_result.dispersion_ratio
-    assert result.peak_acceleration == resolved_result.peak_acceleration
-
-
 def test_each_method_writes_its_own_files_only(tmp_path):
     with pytest.raises(InvalidInput, match="events"):
         run(Impact(speed=8.0, method="resolved"), events=tmp_path / "events")

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
+import os
 import tomllib
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
 
-from .errors import InvalidInput
+from .errors import InvalidInput, shortened, shown
+from .files import as_path, read_text
 from .impact import METHODS, PARAMETERS, Impact
 
 #: impact speeds of both figures, m/s: dense where the near side lets go (1-4) and the far side begins (5-8)
@@ -56,12 +59,12 @@ def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
     if method is None:
         return cases
     if method not in (*METHODS, "both"):
-        raise InvalidInput(f"--method: unknown choice '{method}'; allowed: {', '.join(METHODS)}, both")
+        raise InvalidInput(f"--method: unknown choice {shown(method)}; allowed: {', '.join(METHODS)}, both")
     chosen = METHODS if method == "both" else (method,)
     return list(dict.fromkeys(replace(case, method=name) for name in chosen for case in cases))
 
 
-def read_cases(path: Path) -> list[Impact]:
+def read_cases(path: str | Path) -> list[Impact]:
     """Read a sweep from a TOML file.
 
     Each key is a parameter of `Impact` with one value or a list of values; every combination is a case. Tables
@@ -78,36 +81,43 @@ def read_cases(path: Path) -> list[Impact]:
     Raises:
         InvalidInput: no such file, not TOML, an unknown key, a value out of range; the message names file and key.
     """
+    path = as_path(path, "read_cases")
+    if not os.path.exists(path):
+        raise InvalidInput(f"{path}: no such file; allowed: {', '.join(NAMED)} or the name of a TOML file")
+    text = read_text(path)
     try:
-        with open(path, "rb") as stream:
-            content = tomllib.load(stream)
-    except FileNotFoundError:
-        raise InvalidInput(f"{path}: no such file; allowed: {', '.join(NAMED)} or the name of a TOML file") from None
-    except OSError as error:
-        raise InvalidInput(f"{path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InvalidInput(f"{path}: not TOML: {error}".splitlines()[0]) from None
+        content = tomllib.loads(text)
+    except RecursionError:
+        raise InvalidInput(f"{path}: not TOML that can be read: nested too deeply") from None
+    except ValueError as error:
+        # tomllib's own error, or Python's about a whole number of more than 4300 digits
+        raise InvalidInput(f"{path}: not TOML: {str(error).splitlines()[0]}") from None
 
     tables = content.pop("case", [{}])
     if not (isinstance(tables, list) and tables and all(isinstance(table, dict) for table in tables)):
         raise InvalidInput(f"{path}: case: allowed: tables [[case]]")
     try:
-        cases = [impact for table in tables for impact in _combinations({**content, **table})]
+        sweeps = [_lists({**content, **table}) for table in tables]
+        count = sum(math.prod(map(len, lists.values())) for lists in sweeps)
+        if count > MOST_CASES:
+            raise InvalidInput(f"{shown(count)} cases; allowed: at most {MOST_CASES}")
+        cases = [impact for lists in sweeps for impact in _combinations(lists)]
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from None
     return list(dict.fromkeys(cases))
 
 
-def _combinations(values: dict[str, Any]) -> list[Impact]:
+def _lists(values: dict[str, Any]) -> dict[str, list[Any]]:
+    """The values of each key of a table, a single one as a list of one."""
     for name in values:
         if name not in PARAMETERS:
-            raise InvalidInput(f"{name}: unknown key; allowed: {', '.join(PARAMETERS)}, case")
+            raise InvalidInput(f"{shortened(name, 60)}: unknown key; allowed: {', '.join(PARAMETERS)}, case")
     lists = {name: value if isinstance(value, list) else [value] for name, value in values.items()}
-    count = 1
     for name, entries in lists.items():
         if not entries:
             raise InvalidInput(f"{name}: empty list")
-        count *= len(entries)
-    if count > MOST_CASES:
-        raise InvalidInput(f"{count} cases; allowed: at most {MOST_CASES}")
+    return lists
+
+
+def _combinations(lists: dict[str, list[Any]]) -> list[Impact]:
     return [Impact.from_mapping(dict(zip(lists, chosen, strict=True))) for chosen in product(*lists.values())]

@@ -10,11 +10,13 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from io import TextIOWrapper
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn, TypeAlias
 
 from .cases import NAMED, named_or_file, with_methods
-from .errors import InvalidInput, LammpsMissing
+from .errors import DustError, InvalidInput, MachineFault, one_line
 from .files import writable_file
 from .impact import METHODS, PARAMETER_TYPES, TANGENTIAL, Impact, option
 from .result import Result
@@ -38,6 +40,7 @@ _HELP = {
     "tangential": "tangential lift-off: " + ", ".join(TANGENTIAL),
     "timestep": "s",
 }
+_Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
 _TEXTURE = ("coverage", "bare", "grain_diameter", "carrier_diameter", "seed")
 
 
@@ -45,7 +48,7 @@ class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}\n")
+        self.exit(2, f"{self.prog}: {one_line(message)}\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -57,22 +60,48 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit status.
     """
+    if isinstance(sys.stdout, TextIOWrapper):
+        # file names need not be text
+        sys.stdout.reconfigure(errors="surrogateescape")
     options = _parser().parse_args(arguments)
     speaks = _rank() == 0
     try:
         if _ranks() > 1 and getattr(options, "executor", "local") != "mpi":
             raise InvalidInput(f"started on {_ranks()} MPI ranks; allowed: sweep with --executor mpi, or no mpirun")
-        return options.run(options, speaks)
-    except (InvalidInput, LammpsMissing) as error:
+        status: int = options.run(options, speaks)
+        _flush_output()
+        return status
+    except DustError as error:
         if speaks:
             print(f"{options.program}: {error}", file=sys.stderr)
-        return 2 if isinstance(error, InvalidInput) else 1
+        return error.status
     except KeyboardInterrupt:
         print(f"{options.program}: interrupted", file=sys.stderr)
         return 130
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 1
+    except (OSError, MemoryError) as error:
+        # a full disk behind standard output, or what else the machine cannot do
+        print(f"{options.program}: {one_line(str(error)) or 'not enough memory'}", file=sys.stderr)
+        _drop_output()
+        return 1
+
+
+def _flush_output() -> None:
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        _drop_output()
+        raise MachineFault(f"standard output: {error.strerror}") from None
+
+
+def _drop_output() -> None:
+    """What standard output still holds goes nowhere: Python would complain about it at the end."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -130,7 +159,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _command(commands: Any, name: str, text: str, run: Callable[[argparse.Namespace, bool], int]) -> _Parser:
+def _command(commands: _Commands, name: str, text: str, run: Callable[[argparse.Namespace, bool], int]) -> _Parser:
     parser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", allow_abbrev=False)
     parser.set_defaults(run=run, program=parser.prog)
     return parser

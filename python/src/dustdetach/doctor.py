@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 import platform
-import tempfile
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from .errors import LammpsMissing
+from .errors import LammpsBusy, LammpsMissing
+from .files import read_text, scratch_folder
 from .places import find_deck, find_plugin, lammps_library
 from .runner import DECKS
-from .session import FIX_STYLE, load_plugin, open_lammps
+from .session import FIX_STYLE, lammps_file, load_plugin, open_lammps
 from .version import __version__
 
 #: oldest LAMMPS with granular sub-models that this package is tested with
@@ -43,12 +43,10 @@ def examine() -> list[Finding]:
     ]
     try:
         findings.append(Finding("LAMMPS library", str(lammps_library())))
-        lmp = open_lammps()
-    except LammpsMissing as error:
+        with open_lammps() as lmp:
+            findings += _lammps(lmp)
+    except (LammpsMissing, LammpsBusy) as error:
         findings.append(Finding("LAMMPS", f"{error}", ok=False))
-    else:
-        findings += _lammps(lmp)
-        lmp.close()
     try:
         folders = {find_deck(deck).parent for deck in DECKS.values()}
         findings.append(Finding("decks", ", ".join(sorted(map(str, folders)))))
@@ -85,10 +83,10 @@ def _lammps(lmp: Any) -> list[Finding]:
 
 
 def _info(lmp: Any) -> list[str]:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "info"
-        lmp.command(f'info communication fft out overwrite "{path}"')
-        return path.read_text().splitlines()
+    with scratch_folder() as folder:
+        path = folder / "info"
+        lmp.command(f"info communication fft out overwrite {lammps_file(path, 'TMPDIR')}")
+        return read_text(path).splitlines()
 
 
 def _line(lines: list[str], start: str) -> str:

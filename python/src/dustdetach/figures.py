@@ -18,7 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .errors import InvalidInput
-from .files import replace_file
+from .files import as_path, replace_file
 from .result import Result, read_csv
 from .sweeping import TABLE
 
@@ -69,7 +69,7 @@ Curve = tuple[float | str | bool, ...]
 Colour = str | tuple[float, float, float, float]
 
 
-def plot(folder: Path) -> list[Path]:
+def plot(folder: str | Path) -> list[Path]:
     """Draw ``figure4`` (straight impacts) and ``figure5`` (angles) from ``folder/results.csv``, what there is of them.
 
     Lines are the detachment functions, the mean over seeds where there are several; open markers are resolved runs.
@@ -80,6 +80,7 @@ def plot(folder: Path) -> list[Path]:
     Raises:
         InvalidInput: no table, or nothing in it that makes a curve.
     """
+    folder = as_path(folder, "plot")
     results = read_csv(folder / TABLE)
     straight = [result for result in results if result.angle == 90]
     oblique = _at_most_angles(results)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidInput
+from .errors import InvalidInput, shortened
+from .files import as_path, file_error
 
 #: what a frame must hold of each atom, and the type of the carrier
 COLUMNS = ("id", "type", "x", "y", "z", "radius", "c_tied")
@@ -41,19 +44,38 @@ class Frame:
     tied: NDArray[np.bool_]
 
 
-def frame_sizes(path: Path) -> dict[int, int]:
-    """Number of atoms, the carrier among them, by the step of each frame in a file."""
+def frame_sizes(path: str | Path) -> dict[int, int]:
+    """Number of atoms, the carrier among them, by the step of each frame in a file.
+
+    Raises:
+        InvalidInput: no such file, or no frame in it, or it is cut.
+    """
+    path = as_path(path, "frames")
     sizes: dict[int, int] = {}
-    with open(path) as stream:
+    with _open(path) as stream:
         for line in stream:
             if line.startswith("ITEM: TIMESTEP"):
-                step = int(next(stream))
-                next(stream)
-                sizes[step] = int(next(stream))
+                try:
+                    step = int(next(stream))
+                    next(stream)
+                    sizes[step] = int(next(stream))
+                except (ValueError, StopIteration):
+                    raise InvalidInput(f"{path}: the file is cut, or holds no frames") from None
+    if not sizes:
+        raise InvalidInput(f"{path}: the file is cut, or holds no frames")
     return sizes
 
 
-def read_frames(path: Path, steps: list[int]) -> list[Frame]:
+@contextmanager
+def _open(path: Path) -> Iterator[TextIO]:
+    try:
+        with open(path, encoding="utf-8", errors="replace") as stream:
+            yield stream
+    except OSError as error:
+        raise file_error(path, error) from None
+
+
+def read_frames(path: str | Path, steps: list[int]) -> list[Frame]:
     """The frames of some steps, in the order of ``steps``.
 
     Necks form with the first contact forces, after the frame of step 0 is written: its grains are all tied.
@@ -61,14 +83,19 @@ def read_frames(path: Path, steps: list[int]) -> list[Frame]:
     Raises:
         InvalidInput: no frame of one of the steps, or a frame that is cut or lacks a column.
     """
+    path = as_path(path, "frames")
     found = {}
-    with open(path) as stream:
+    with _open(path) as stream:
         for line in stream:
-            if line.startswith("ITEM: TIMESTEP") and (step := int(next(stream))) in steps:
+            if line.startswith("ITEM: TIMESTEP"):
+                number = next(stream, "").strip()
                 try:
-                    found[step] = _read_frame(stream, step)
-                except (ValueError, StopIteration) as error:
-                    raise InvalidInput(f"{path}: frame of step {step}: {str(error) or 'the file is cut'}") from None
+                    step = int(number)
+                    if step in steps:
+                        found[step] = _read_frame(stream, step)
+                except (ValueError, IndexError, StopIteration) as error:
+                    reason = str(error).splitlines() or ["the file is cut"]
+                    raise InvalidInput(f"{path}: frame of step {shortened(number, 20)}: {reason[0]}") from None
     for step in steps:
         if step not in found:
             raise InvalidInput(f"{path}: no frame of step {step}")

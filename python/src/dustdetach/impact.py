@@ -6,7 +6,9 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any
 
-from .errors import InvalidInput
+import numpy as np
+
+from .errors import InvalidInput, shown
 
 METHODS = ("functions", "resolved")
 TANGENTIAL = ("estimate", "integrate", "frictionless", "off")
@@ -18,6 +20,9 @@ JAMMING = 0.547
 MOST_GRAINS = 10_000_000
 
 LARGEST_SEED = 900_000_000
+
+#: below it products of parameters are too small for floating-point numbers
+SMALLEST = 1e-60
 
 
 def option(field: str) -> str:
@@ -76,8 +81,8 @@ class Impact:
         seed: of the random texture, 1 to 900000000.
         tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``integrate`` (each grain's own sliding and
             rolling), ``frictionless`` (Eq. 4) or ``off``; resolved runs do not use it.
-        rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs follow it
-            whatever this says.
+        rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs always
+            follow it.
         timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
             grain's oscillation.
 
@@ -152,6 +157,10 @@ class Impact:
 
     def _check_resolved(self) -> None:
         """What a resolved run needs beyond the ranges of all impacts."""
+        if not self.rotation:
+            raise InvalidInput(
+                "--rotation: false is for the functions, a resolved run always follows the spin; allowed: true"
+            )
         if self.grains > MOST_RESOLVED_GRAINS:
             smallest = self.carrier_diameter * math.sqrt(4 * self.coverage / MOST_RESOLVED_GRAINS)
             raise InvalidInput(
@@ -196,7 +205,8 @@ class Impact:
         radius = self.carrier_diameter / 2
         speed = self.speed * math.sin(math.radians(self.angle))
         mass = 4 / 3 * math.pi * radius**3 * CARRIER_DENSITY
-        return 2.9432 * (15 * mass * speed**2 / (16 * CONTACT_MODULUS * math.sqrt(radius))) ** 0.4 / speed
+        overlap = (15 * mass * speed**2 / (16 * CONTACT_MODULUS * math.sqrt(radius))) ** 0.4
+        return 2.9432 * float(overlap) / speed
 
     @property
     def grains(self) -> int:
@@ -207,7 +217,7 @@ class Impact:
     def largest_coverage(self) -> float:
         """Coverage at which random sequential placement jams, 0.547 ((R_p+R_d)/R_p)^2 (1 - (1 - cos bare)/2)."""
         shell = (1 + self.grain_diameter / self.carrier_diameter) ** 2
-        return round(JAMMING * shell * (1 + math.cos(self.bare)) / 2, 4)
+        return float(round(JAMMING * shell * (1 + math.cos(self.bare)) / 2, 4))
 
     @classmethod
     def from_mapping(cls, values: dict[str, Any]) -> Impact:
@@ -233,37 +243,49 @@ def _convert(name: str, kind: str, value: Any) -> str | bool | int | float:
     """The value as its field's type; numbers may come as any kind of number, numpy's included."""
     if kind == "str":
         if not isinstance(value, str):
-            raise InvalidInput(f"{option(name)}: {value!r} is not a word")
-        return value
+            raise InvalidInput(f"{option(name)}: {shown(value)} is not a word")
+        return str(value)
     if kind == "bool":
-        if not isinstance(value, bool):
-            raise InvalidInput(f"{option(name)}: {value!r} is not true or false")
-        return value
-    if isinstance(value, (str, bool)):
-        raise InvalidInput(f"{option(name)}: {value!r} is not a number")
+        if not isinstance(value, (bool, np.bool_)):
+            raise InvalidInput(f"{option(name)}: {shown(value)} is not true or false")
+        return bool(value)
+    number = finite_number(name, value)
+    if kind == "int":
+        if int(value) != number:
+            raise InvalidInput(f"{option(name)}: {number:g} is not a whole number")
+        return int(value)
+    return number
+
+
+def finite_number(name: str, value: Any) -> float:
+    """A number of any kind as a plain one.
+
+    Raises:
+        InvalidInput: it is none, or not finite.
+    """
+    listed = isinstance(value, np.ndarray) and value.ndim > 0
+    if listed or isinstance(value, (str, bytes, bytearray, bool, np.bool_)):
+        raise InvalidInput(f"{option(name)}: {shown(value)} is not a number")
     try:
         number = float(value)
-        whole = int(value) if kind == "int" else 0
     except (TypeError, ValueError, OverflowError):
-        raise InvalidInput(f"{option(name)}: {value!r} is not a finite number") from None
+        raise InvalidInput(f"{option(name)}: {shown(value)} is not a finite number") from None
     if not math.isfinite(number):
-        raise InvalidInput(f"{option(name)}: {value} is not a finite number")
-    if kind == "int":
-        if whole != number:
-            raise InvalidInput(f"{option(name)}: {value} is not a whole number")
-        return whole
+        raise InvalidInput(f"{option(name)}: {number} is not a finite number")
     return number
 
 
 def _one_of(name: str, value: str, allowed: tuple[str, ...]) -> None:
     if value not in allowed:
-        raise InvalidInput(f"{option(name)}: unknown choice '{value}'; allowed: {', '.join(allowed)}")
+        raise InvalidInput(f"{option(name)}: unknown choice {shown(value)}; allowed: {', '.join(allowed)}")
 
 
 def _above(name: str, value: float, low: float, high: float, unit: str = "", *, included: bool = True) -> None:
     if not (low < value <= high if included else low < value < high):
         allowed = f"above {low:g} and {'at most' if included else 'below'} {high:g} {unit}".rstrip()
         raise InvalidInput(f"{option(name)}: {value:g} is out of range; allowed: {allowed}")
+    if low == 0 and value < SMALLEST:
+        raise InvalidInput(f"{option(name)}: {value:g} is too small to compute with; allowed: at least {SMALLEST:g}")
 
 
 def _from(name: str, value: float, low: float, high: float, unit: str = "", *, included: bool = True) -> None:

@@ -7,8 +7,8 @@ from the side, as in the paper's Figs. 2 and 3.
 from __future__ import annotations
 
 import math
-import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -26,13 +26,14 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from PIL import Image
 
-from .errors import InvalidInput
-from .files import replace_file
+from .columns import DetachRow, Mode
+from .errors import InvalidInput, MachineFault, shown
+from .files import as_path, read_text, replace_file, scratch_folder, writable_file
 from .frames import Frame, frame_sizes, read_frames
 from .impact import Impact
 from .result import Result
 from .runner import Watch, run
-from .session import lammps_session
+from .session import lammps_file, lammps_session
 from .texture import Texture, make_texture, read_texture
 
 #: width and height of the drawing of a carrier, and of each moment of an impact, pixels
@@ -62,9 +63,6 @@ FATES = (
 #: what a grain is at a moment of a resolved impact
 STATES = (Kind("tied to the carrier", GRAIN.colour), Kind("detached", (0.84, 0.37, 0.0)))
 
-# column of the dumped events that hold the grain (from 1) and the mode, after step and carrier
-_GRAIN, _MODE = 2, 3
-
 
 @dataclass(frozen=True)
 class _Scene:
@@ -91,16 +89,17 @@ class _Scene:
     size: int
 
 
-def draw_texture(texture: Texture, path: Path) -> None:
+def draw_texture(texture: Texture, path: str | Path) -> None:
     """Draw a carrier with its grains as PNG, seen from the side of the impact and below so that the bare cap shows."""
+    path = writable_file(as_path(path, "picture"), "picture")
     kinds = np.zeros(len(texture.diameters), dtype=int)
-    with tempfile.TemporaryDirectory() as folder:
-        image = Path(folder) / "carrier.png"
+    with scratch_folder() as folder:
+        image = folder / "carrier.png"
         _render(_carrier_scene(texture, kinds, [GRAIN]), image)
         _compose(image, [], path)
 
 
-def draw_impact(impact: Impact, path: Path, watch: Watch | None = None) -> Result:
+def draw_impact(impact: Impact, path: str | Path, watch: Watch | None = None) -> Result:
     """Run an impact and draw it as PNG.
 
     With the functions: the carrier, every grain at its place and coloured by what became of it. Resolved: four moments.
@@ -112,18 +111,26 @@ def draw_impact(impact: Impact, path: Path, watch: Watch | None = None) -> Resul
 
     Returns:
         The impact's result.
+
+    Raises:
+        InvalidInput: there can be no file of this name.
+        MachineFault: the disk is full, that of temporary files included.
     """
+    path = writable_file(as_path(path, "picture"), "picture")
     draw = _draw_moments if impact.method == "resolved" else _draw_fates
-    with tempfile.TemporaryDirectory() as folder:
-        return draw(impact, path, Path(folder), watch)
+    with scratch_folder() as folder:
+        return draw(impact, path, folder, watch)
 
 
 def _draw_fates(impact: Impact, path: Path, folder: Path, watch: Watch | None) -> Result:
     events, grains, image = (folder / name for name in ("events.dump", "grains.txt", "carrier.png"))
     result = run(impact, events=events, watch=watch)
     make_texture(impact, grains)
-    texture = read_texture(grains)
-    fates = read_fates(events, len(texture.diameters))
+    with _written_by_us():
+        texture = read_texture(grains)
+        fates = read_fates(events, len(texture.diameters))
+        if np.count_nonzero(fates) != round(result.dispersion_ratio * result.grains):
+            raise InvalidInput(f"{events}: not all detachments are there")
     _render(_carrier_scene(texture, fates, FATES), image)
     _compose(image, _legend(np.bincount(fates, minlength=len(FATES))), path)
     return result
@@ -132,11 +139,22 @@ def _draw_fates(impact: Impact, path: Path, folder: Path, watch: Watch | None) -
 def _draw_moments(impact: Impact, path: Path, folder: Path, watch: Watch | None) -> Result:
     dump = folder / "frames.dump"
     result = run(impact, frames=dump, watch=watch)
-    draw_moments(dump, result, path)
+    with _written_by_us():
+        moments = _read_moments(dump, result)
+    _draw_frames(moments, result, path)
     return result
 
 
-def draw_moments(frames: Path, result: Result, path: Path) -> None:
+@contextmanager
+def _written_by_us() -> Iterator[None]:
+    """A file of ours that is not what it should be: LAMMPS does not tell when a disk is full."""
+    try:
+        yield
+    except InvalidInput as error:
+        raise MachineFault(f"{error}: the disk may be full") from None
+
+
+def draw_moments(frames: str | Path, result: Result, path: str | Path) -> None:
     """Draw four moments of a resolved impact as PNG, all seen by one camera from the side.
 
     Args:
@@ -144,10 +162,17 @@ def draw_moments(frames: Path, result: Result, path: Path) -> None:
         result: what it returned.
         path: the picture.
     """
-    steps = _moments(frame_sizes(frames), result)
-    chosen = read_frames(frames, steps)
-    with tempfile.TemporaryDirectory() as folder:
-        images = [Path(folder) / f"{frame.step}.png" for frame in chosen]
+    path = writable_file(as_path(path, "picture"), "picture")
+    _draw_frames(_read_moments(frames, result), result, path)
+
+
+def _read_moments(frames: str | Path, result: Result) -> list[Frame]:
+    return read_frames(frames, _moments(frame_sizes(frames), result))
+
+
+def _draw_frames(chosen: list[Frame], result: Result, path: Path) -> None:
+    with scratch_folder() as folder:
+        images = [folder / f"{frame.step}.png" for frame in chosen]
         for frame, image in zip(chosen, images, strict=True):
             _render(_side_scene(frame), image)
         _compose_moments(chosen, images, result, path)
@@ -164,20 +189,24 @@ def _moments(sizes: dict[int, int], result: Result) -> list[int]:
     return [min(sizes), contact[0], min(contact, key=lambda step: abs(step - between)), last]
 
 
-def read_fates(path: Path, grains: int) -> NDArray[np.int64]:
+def read_fates(path: str | Path, grains: int) -> NDArray[np.int64]:
     """What became of each grain (0 attached, else the mode) from the events that LAMMPS' dump local wrote.
 
     Raises:
-        InvalidInput: an event of a grain that the texture does not have.
+        InvalidInput: no such file, or it is cut, or an event of a grain that the texture does not have.
     """
+    path = as_path(path, "events")
     fates = np.zeros(grains, dtype=np.int64)
     rows = False
-    for line in path.read_text().splitlines():
+    for line in read_text(path).splitlines():
         if line.startswith("ITEM:"):
             rows = line.startswith("ITEM: ENTRIES")
         elif rows:
             words = line.split()
-            grain, mode = int(float(words[_GRAIN])), int(float(words[_MODE]))
+            try:
+                grain, mode = int(float(words[DetachRow.GRAIN])), Mode(int(float(words[DetachRow.MODE])))
+            except (ValueError, IndexError, OverflowError):
+                raise InvalidInput(f"{path}: {shown(line)} is no event: the file is cut, or another one") from None
             if not 1 <= grain <= grains:
                 raise InvalidInput(f"{path}: an event of grain {grain}, but the texture has {grains}")
             fates[grain - 1] = mode
@@ -258,8 +287,9 @@ def _render(scene: _Scene, image: Path) -> None:
         # at zoom 1 LAMMPS draws twice the longest edge of the box
         zoom = 2 * (scene.box[1] - scene.box[0]).max() / scene.width
         polar, azimuth = scene.view
+        name = lammps_file(image, "TMPDIR")
         lmp.command(
-            f'write_dump all image "{image}" type diameter size {scene.size} {scene.size} view {polar} {azimuth} '
+            f"write_dump all image {name} type diameter size {scene.size} {scene.size} view {polar} {azimuth} "
             f"up 0 0 1 zoom {zoom} box no 0.0 axes no 0.0 0.0 shiny 0.15 fsaa yes ssao yes 4711 0.15 modify {modify} "
             "backcolor white"
         )
@@ -297,9 +327,17 @@ def _drawn(pixels: NDArray[np.float64]) -> tuple[slice, slice]:
     return slice(top, bottom + 1), slice(left, right + 1)
 
 
+def _pixels(image: Path) -> NDArray[np.float64]:
+    """Red, green and blue from 0 to 1 of an image that LAMMPS has drawn."""
+    try:
+        return np.asarray(plt.imread(image)[:, :, :3], dtype=np.float64)
+    except (OSError, SyntaxError, ValueError) as error:
+        raise MachineFault(f"{image}: {error}: the disk may be full") from None
+
+
 def _compose(image: Path, handles: list[Line2D], path: Path) -> None:
     """The drawing without its margins, above a legend if there is one."""
-    pixels = plt.imread(image)[:, :, :3]
+    pixels = _pixels(image)
     pixels = pixels[_drawn(pixels)]
     height, width = pixels.shape[0] / SIZE * 6, pixels.shape[1] / SIZE * 6
     margin, foot = 0.1, 0.27 * len(handles) + 0.1 * bool(handles)
@@ -311,7 +349,7 @@ def _compose(image: Path, handles: list[Line2D], path: Path) -> None:
     if handles:
         figure.legend(handles=handles, loc="lower center", frameon=False, fontsize=11, handletextpad=0.3)
     with replace_file(path) as part:
-        figure.savefig(part, dpi=SIZE / 6)
+        figure.savefig(part, format="png", dpi=SIZE / 6)
     plt.close(figure)
 
 
@@ -321,7 +359,7 @@ _PANEL, _GAP, _FOOT = 3.6, 0.12, 0.35
 
 def _compose_moments(frames: list[Frame], images: list[Path], result: Result, path: Path) -> None:
     """Two rows of two panels, cut alike; below each its time and how many grains are on and off, then the legend."""
-    drawings = [plt.imread(image)[:, :, :3] for image in images]
+    drawings = [_pixels(image) for image in images]
     rows, columns = _drawn(np.minimum.reduce(drawings))
     height = _PANEL * (rows.stop - rows.start) / (columns.stop - columns.start)
     total = (2 * _PANEL + 3 * _GAP, 2 * (height + _FOOT + _GAP) + 0.4)
@@ -360,9 +398,11 @@ def _draw_velocity(axes: Axes, frame: Frame, result: Result) -> None:
     half = 0.3 * pixels * np.array([math.cos(angle), math.sin(angle)])
     arrow = {"arrowstyle": "-|>,head_width=0.35,head_length=0.7", "linewidth": 2.2, "color": "black"}
     outline = [withStroke(linewidth=4.5, foreground="white")]
-    axes.annotate("", middle + half, middle - half, arrowprops={**arrow, "path_effects": outline})
+    head, tail = middle + half, middle - half
+    axes.annotate("", (head[0], head[1]), (tail[0], tail[1]), arrowprops={**arrow, "path_effects": outline})
     axes.text(
-        *(middle - half - [0, 0.04 * pixels]),
+        tail[0],
+        tail[1] - 0.04 * pixels,
         f"{result.speed:g} m/s, {result.angle:g}°",
         ha="center",
         va="bottom",
@@ -376,4 +416,6 @@ def _save_small(figure: Figure, path: Path, dpi: float) -> None:
     with BytesIO() as buffer:
         figure.savefig(buffer, format="png", dpi=dpi)
         image = Image.open(buffer).convert("RGB")
-        image.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
+        image.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+            path, format="PNG", optimize=True
+        )

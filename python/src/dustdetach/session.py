@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import re
+import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from ctypes import create_string_buffer
 from functools import cache
+from pathlib import Path
 from typing import Any
 
-from .errors import InvalidInput, LammpsMissing
+from .errors import InvalidInput, LammpsBusy, LammpsMissing
 from .places import find_plugin, lammps_module
 
 FIX_STYLE = "dust/detach"
 
 #: options that keep LAMMPS from writing to the screen or a log file
 QUIET = ("-log", "none", "-screen", "none", "-nocite", "-echo", "none")
+
+
+#: LAMMPS and MPI are for one thread at a time
+_at_work = threading.Lock()
 
 
 @contextmanager
@@ -28,19 +34,18 @@ def lammps_session(variables: Mapping[str, Any] | None = None, comm: Any = None)
 
     Raises:
         LammpsMissing: LAMMPS or the plugin cannot be found or loaded.
+        LammpsBusy: another thread of this process has it open.
         InvalidInput: LAMMPS refuses a command of the block; its message without the place in LAMMPS' source.
     """
     arguments = list(QUIET)
     for name, value in (variables or {}).items():
         arguments += ["-var", name, f"{value!r}" if isinstance(value, float) else str(value)]
-    lmp = open_lammps(arguments, comm)
-    try:
-        load_plugin(lmp)
-        yield lmp
-    except LammpsRefusal as error:
-        raise InvalidInput(str(error)) from None
-    finally:
-        lmp.close()
+    with open_lammps(arguments, comm) as lmp:
+        try:
+            load_plugin(lmp)
+            yield lmp
+        except LammpsRefusal as error:
+            raise InvalidInput(str(error)) from None
 
 
 class LammpsRefusal(Exception):
@@ -51,16 +56,41 @@ class LammpsRefusal(Exception):
         super().__init__(re.sub(r" \([\w./+-]+:\d+\)", "", text))
 
 
-def open_lammps(arguments: Sequence[str] = QUIET, comm: Any = None) -> Any:
-    """Open LAMMPS without the package DUST; its errors come as `LammpsRefusal`.
+@contextmanager
+def open_lammps(arguments: Sequence[str] = QUIET, comm: Any = None) -> Iterator[Any]:
+    """Open LAMMPS without the package DUST, close it at the end; its errors come as `LammpsRefusal`.
 
     Raises:
         LammpsMissing: LAMMPS cannot be found or does not start.
+        LammpsBusy: another thread of this process has it open.
     """
+    if not _at_work.acquire(blocking=False):
+        raise LammpsBusy(
+            "LAMMPS runs in another thread of this process; allowed: one run at a time, or sweep with several jobs"
+        )
     try:
-        return _lammps_class()(cmdargs=list(arguments), comm=comm)
-    except (OSError, RuntimeError, AttributeError) as error:
-        raise LammpsMissing(f"LAMMPS does not start: {error}") from None
+        lammps = _lammps_class()
+        try:
+            lmp = lammps(cmdargs=list(arguments), comm=comm)
+        except (OSError, RuntimeError, AttributeError) as error:
+            raise LammpsMissing(f"LAMMPS does not start: {error}") from None
+        try:
+            yield lmp
+        finally:
+            lmp.close()
+    finally:
+        _at_work.release()
+
+
+def lammps_file(path: Path, name: str) -> str:
+    """The name of a file as a word of a LAMMPS command.
+
+    Raises:
+        InvalidInput: it holds a quote or a line break, which no word of LAMMPS can.
+    """
+    if re.search(r"[\"\x00-\x1f\x7f]", str(path)):
+        raise InvalidInput(f"{name}: {path}: LAMMPS takes no such name; allowed: without quotes and line breaks")
+    return f'"{path}"'
 
 
 @cache
@@ -89,7 +119,7 @@ def load_plugin(lmp: Any) -> None:
     if not lmp.has_package("PLUGIN"):
         raise LammpsMissing("this LAMMPS is built without the package PLUGIN; run ./bootstrap build")
     try:
-        lmp.command(f'plugin load "{plugin}"')
+        lmp.command(f"plugin load {lammps_file(plugin, 'DUSTDETACH_PLUGIN')}")
     except LammpsRefusal as error:
         raise LammpsMissing(f"the plugin {plugin} refuses this LAMMPS: {error}") from None
     if not lmp.has_style("fix", FIX_STYLE):

@@ -8,26 +8,30 @@ the plugin and the deck): results of another build are never taken for one's own
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import multiprocessing
+import operator
 import os
 import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import asdict
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import asdict, dataclass
+from multiprocessing.synchronize import Event
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from .errors import InvalidInput, LammpsMissing
-from .files import replace_file
+from .errors import DustError, InvalidInput, LammpsBusy, LammpsMissing, shown
+from .files import as_path, file_error, make_folder, replace_file
 from .impact import Impact
 from .places import find_deck, lammps_library, plugin_if_any
-from .result import Result, write_csv
+from .result import Result, read_result, write_csv
 from .runner import DECKS, run
 from .version import __version__
 
@@ -38,19 +42,31 @@ COMPLETE = "result.json"
 #: seconds between two rewritings of the table while cases come in
 TABLE_INTERVAL = 5.0
 
+#: set in the environment of the processes of a sweep
+WORKER = "DUSTDETACH_WORKER"
+
 Progress = Callable[[int, int, float], None]
-Outcome = tuple[Impact, Result | None, str]
 
 
-class CasesFailed(RuntimeError):
+class CasesFailed(DustError, RuntimeError):
     """Some cases of a sweep failed and the others are done; ``failures`` holds each with its message."""
 
     def __init__(self, failures: list[tuple[Impact, str]]) -> None:
-        super().__init__(failures)
+        super().__init__(f"{len(failures)} cases failed; first: {failures[0][1]}")
         self.failures = failures
 
-    def __str__(self) -> str:
-        return f"{len(self.failures)} cases failed; first: {self.failures[0][1]}"
+    def __reduce__(self) -> tuple[type[CasesFailed], tuple[list[tuple[Impact, str]]]]:
+        return type(self), (self.failures,)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a case: a result, or why it alone has none, or why none of the others will."""
+
+    case: Impact
+    result: Result | None = None
+    failure: str = ""
+    stop: DustError | None = None
 
 
 def sweep(
@@ -75,64 +91,112 @@ def sweep(
         earlier sweeps too.
 
     Raises:
-        InvalidInput: ``out`` is not a folder, ``jobs`` or ``executor`` is out of range.
+        InvalidInput: ``cases`` are none, ``out`` is not a folder that takes the results, a file in it is not what its
+            name says, ``jobs`` or ``executor`` is out of range, or a script calls this with several jobs outside of its
+            ``if __name__ == "__main__":``.
         LammpsMissing: LAMMPS, the plugin, the deck, or mpi4py for ``mpi``, is not there.
+        LammpsBusy: another thread of this process runs LAMMPS.
+        MachineFault: the disk is full, or fails.
         CasesFailed: after all others are done.
     """
-    folder = Path(out)
-    if folder.exists() and not folder.is_dir():
-        raise InvalidInput(f"--out: {folder} is a file; allowed: the name of a folder")
-    if jobs < 1:
-        raise InvalidInput(f"--jobs: {jobs} is out of range; allowed: 1 or more")
+    folder = as_path(out, "--out")
+    cases = _impacts(cases)
+    jobs = _jobs(jobs)
     if executor not in EXECUTORS:
-        raise InvalidInput(f"--executor: unknown choice '{executor}'; allowed: {', '.join(EXECUTORS)}")
+        raise InvalidInput(f"--executor: unknown choice {shown(executor)}; allowed: {', '.join(EXECUTORS)}")
     if executor == "mpi" and jobs != 1:
         raise InvalidInput("--jobs: with --executor mpi the number of ranks is mpirun's; allowed: 1")
 
     build = Build()
     _check_writable(folder)
-    cases = list(dict.fromkeys(cases))
     if executor == "mpi":
         return _sweep_on_ranks(cases, folder, build, progress)
-    pending = [case for case in cases if not _is_complete(build.folder(folder, case))]
+    table = _Table(folder, build)
+    pending = [case for case in cases if not table.has(case)]
     if jobs == 1:
         outcomes: Iterator[Outcome] = (_attempt(folder, build, case) for case in pending)
     else:
         outcomes = _in_processes(folder, build, pending, jobs)
-    return _collect(cases, len(pending), outcomes, folder, build, progress)
+    return _collect(cases, len(pending), outcomes, table, progress)
+
+
+def _impacts(cases: Iterable[Impact]) -> list[Impact]:
+    """The cases, each once."""
+    try:
+        listed = list(cases)
+    except TypeError:
+        raise InvalidInput(f"sweep: {shown(cases)} is not a list of impacts") from None
+    for case in listed:
+        if not isinstance(case, Impact):
+            raise InvalidInput(f"sweep: {shown(case)} is not an Impact")
+    return list(dict.fromkeys(listed))
+
+
+def _jobs(jobs: int) -> int:
+    """Number of processes, if this process can start them."""
+    try:
+        number = operator.index(jobs)
+    except TypeError:
+        raise InvalidInput(f"--jobs: {shown(jobs)} is not a whole number; allowed: 1 or more") from None
+    if isinstance(jobs, bool) or number < 1:
+        raise InvalidInput(f"--jobs: {shown(jobs)} is out of range; allowed: 1 or more")
+    if number > 1 and multiprocessing.current_process().daemon:
+        raise InvalidInput(f"--jobs: {number} in a process that may not start others; allowed: 1")
+    if number > 1 and getattr(multiprocessing.current_process(), "_inheriting", False):
+        if WORKER in os.environ:
+            # a process of a sweep: the one that started it says why, once for all
+            raise SystemExit(1)
+        raise InvalidInput(NO_GUARD)
+    return number
+
+
+#: each process of a sweep reads the script that started it, and would come to the same call
+NO_GUARD = (
+    "--jobs: the processes of a sweep ended while they read the script that called it; allowed: 1, or a call under "
+    "if __name__ == '__main__':"
+)
 
 
 def _check_writable(folder: Path) -> None:
     """Before hours of work: whether the folder, or the one in which it will be made, takes files; leaves none."""
-    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    if os.path.lexists(folder) and not os.path.isdir(folder):
+        raise InvalidInput(f"--out: {folder} is a file; allowed: the name of a folder")
+    if os.path.isdir(folder / TABLE):
+        raise InvalidInput(f"--out: {folder / TABLE} is a folder; allowed: a folder in which it can be a file")
+    there = next(place for place in (folder, *folder.absolute().parents) if os.path.lexists(place))
+    try:
+        os.lstat(folder / TABLE)
+    except FileNotFoundError:
+        pass
+    except OSError as error:
+        raise InvalidInput(f"--out: {folder}: {error.strerror}; allowed: a folder that can be written to") from None
     try:
         with tempfile.TemporaryDirectory(dir=there):
             pass
     except OSError as error:
-        raise InvalidInput(f"--out: {folder}: {error.strerror}; allowed: a folder that can be written to") from None
+        fault = file_error(folder, error)
+        if not isinstance(fault, InvalidInput):
+            raise fault from None
+        raise InvalidInput(f"--out: {fault}; allowed: a folder that can be written to") from None
 
 
 def _collect(
-    cases: list[Impact],
-    pending: int,
-    outcomes: Iterable[Outcome],
-    folder: Path,
-    build: Build,
-    progress: Progress | None,
+    cases: list[Impact], pending: int, outcomes: Iterable[Outcome], table: _Table, progress: Progress | None
 ) -> list[Result]:
-    table = _Table(folder, build)
     report = _Report(len(cases), pending, progress)
     failures = []
-    for case, result, message in outcomes:
-        if result is None:
-            failures.append((case, message))
+    for outcome in outcomes:
+        if outcome.stop is not None:
+            raise outcome.stop
+        if outcome.result is None:
+            failures.append((outcome.case, outcome.failure))
         else:
-            table.add(build.name(case), result)
+            table.add(outcome.case, outcome.result)
         report.step()
     table.write()
     if failures:
         raise CasesFailed(failures)
-    return [table.rows[build.name(case)] for case in cases]
+    return [table.row(case) for case in cases]
 
 
 class Build:
@@ -161,25 +225,57 @@ class _Table:
     """The rows of ``results.csv``: every complete case of this build in the folder, by name."""
 
     def __init__(self, folder: Path, build: Build) -> None:
-        self._path = folder / TABLE
+        self._folder, self._build = folder, build
         self._written = time.monotonic()
-        self.rows = {
-            path.parent.name: Result.from_json(path.read_text())
-            for method, suffix in build.suffixes.items()
-            for path in folder.glob(f"{method}-*-{suffix}/{COMPLETE}")
-        }
+        self._rows: dict[str, Result] = {}
+        self._look()
 
-    def add(self, name: str, result: Result) -> None:
-        self.rows[name] = result
+    def has(self, case: Impact) -> bool:
+        return self._build.name(case) in self._rows
+
+    def row(self, case: Impact) -> Result:
+        return self._rows[self._build.name(case)]
+
+    def add(self, case: Impact, result: Result) -> None:
+        self._rows[self._build.name(case)] = result
         if time.monotonic() - self._written > TABLE_INTERVAL:
             self.write()
 
     def write(self) -> None:
-        if not self.rows:
-            return
-        rows = self.rows.values()
-        write_csv(self._path, sorted(rows, key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())))
+        """Write the table with what other sweeps into this folder have made, too: they may be at work now."""
+        with _locked(self._folder):
+            self._look()
+            if self._rows:
+                rows = sorted(
+                    self._rows.values(), key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())
+                )
+                write_csv(self._folder / TABLE, rows)
         self._written = time.monotonic()
+
+    def _look(self) -> None:
+        """Take in the complete cases that are not known yet."""
+        for method, suffix in self._build.suffixes.items():
+            for path in self._folder.glob(f"{method}-*-{suffix}/{COMPLETE}"):
+                if path.parent.name not in self._rows:
+                    self._rows[path.parent.name] = _complete(path)
+
+
+def _complete(path: Path) -> Result:
+    try:
+        return read_result(path)
+    except InvalidInput as error:
+        raise InvalidInput(f"{error}; remove it, and its case is run again") from None
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """One process at a time, where the folder is there and its file system has locks."""
+    with ExitStack() as stack:
+        with suppress(OSError):
+            file = os.open(folder, os.O_RDONLY)
+            stack.callback(os.close, file)
+            fcntl.flock(file, fcntl.LOCK_EX)
+        yield
 
 
 class _Report:
@@ -203,37 +299,54 @@ class _Report:
         self._progress(self._total - self._left, self._total, pace * self._left)
 
 
-def _is_complete(folder: Path) -> bool:
-    return (folder / COMPLETE).is_file()
-
-
 def _attempt(out: Path, build: Build, case: Impact, comm: Any = None) -> Outcome:
-    """Run one case into its folder; a failure is a message, so that the others go on."""
-    try:
-        result = run(case, comm=comm)
-    except InvalidInput as error:
-        return case, None, str(error)
+    """Run one case into its folder unless another sweep has; a failure is a message, so that the others go on."""
     folder = build.folder(out, case)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "build.json").write_text(json.dumps(build.identity[case.method], indent=1) + "\n")
-    with replace_file(folder / COMPLETE) as part:
-        part.write_text(result.to_json() + "\n")
-    return case, result, ""
+    try:
+        if os.path.exists(folder / COMPLETE):
+            return Outcome(case, result=_complete(folder / COMPLETE))
+        try:
+            result = run(case, comm=comm)
+        except LammpsBusy:
+            raise
+        except InvalidInput as error:
+            return Outcome(case, failure=str(error))
+        make_folder(folder)
+        with replace_file(folder / "build.json") as part:
+            part.write_text(json.dumps(build.identity[case.method], indent=1) + "\n")
+        with replace_file(folder / COMPLETE) as part:
+            part.write_text(result.to_json() + "\n")
+        return Outcome(case, result=result)
+    except DustError as error:
+        return Outcome(case, stop=error)
 
 
 def _in_processes(out: Path, build: Build, pending: list[Impact], jobs: int) -> Iterator[Outcome]:
     """Outcomes as they come from processes that are started afresh: LAMMPS and MPI do not survive a fork."""
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(jobs, len(pending)) or 1, context, _die_with_parent) as pool:
-        futures = {pool.submit(_attempt, out, build, case): case for case in pending}
-        try:
-            for future in as_completed(futures):
-                try:
-                    yield future.result()
-                except BrokenProcessPool:
-                    yield futures[future], None, "the process that ran it died"
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
+    ready = context.Event()
+    os.environ[WORKER] = "1"
+    try:
+        with ProcessPoolExecutor(min(jobs, len(pending)) or 1, context, _start_worker, (ready,)) as pool:
+            futures = {pool.submit(_attempt, out, build, case): case for case in pending}
+            try:
+                for future in as_completed(futures):
+                    try:
+                        yield future.result()
+                    except BrokenProcessPool:
+                        if not ready.is_set():
+                            raise InvalidInput(NO_GUARD) from None
+                        yield Outcome(futures[future], failure="the process that ran it died")
+            finally:
+                pool.shutdown(wait=False, cancel_futures=True)
+    finally:
+        os.environ.pop(WORKER, None)
+
+
+def _start_worker(ready: Event) -> None:
+    """Tell that this process has come past the script that started the sweep, and end it with the sweep."""
+    ready.set()
+    _die_with_parent()
 
 
 def _die_with_parent() -> None:
@@ -256,33 +369,58 @@ def _sweep_on_ranks(cases: list[Impact], folder: Path, build: Build, progress: P
         raise LammpsMissing(f"--executor mpi needs mpi4py ({error}); pip install 'dustdetach[mpi]'") from None
     world = MPI.COMM_WORLD
     try:
-        pending = [case for case in cases if not _is_complete(build.folder(folder, case))]
-        pending = world.bcast(pending)
-        mine = (_attempt(folder, build, case, MPI.COMM_SELF) for case in pending[world.rank :: world.size])
-        if world.rank > 0:
+        table, plan = _plan(cases, folder, build) if world.rank == 0 else (None, None)
+        plan = world.bcast(plan)
+        if isinstance(plan, DustError):
+            raise plan
+        mine = _until_stop(_attempt(folder, build, case, MPI.COMM_SELF) for case in plan[world.rank :: world.size])
+        if table is None:
             world.gather(list(mine))
             answer = world.bcast(None)
         else:
             outcomes = _then_gather(mine, world)
             try:
-                answer = _collect(cases, len(pending), outcomes, folder, build, progress)
-            except CasesFailed as error:
+                answer = _collect(cases, len(plan), outcomes, table, progress)
+            except DustError as error:
+                outcomes.close()
                 answer = error
             world.bcast(answer)
+    except DustError:
+        raise
     except Exception as error:
         # the other ranks would wait for this one forever
         print(f"dustdetach sweep: rank {world.rank}: {error}", file=sys.stderr, flush=True)
         world.Abort(1)
         raise
-    if isinstance(answer, CasesFailed):
+    if isinstance(answer, DustError):
         raise answer
-    return answer
+    return cast("list[Result]", answer)
 
 
-def _then_gather(mine: Iterable[Outcome], world: Any) -> Iterator[Outcome]:
-    """Rank 0's own outcomes as they come, then those of the others."""
-    yield from mine
-    for outcomes in world.gather([])[1:]:
+def _plan(cases: list[Impact], folder: Path, build: Build) -> tuple[_Table | None, list[Impact] | DustError]:
+    """The table and the cases that are missing in it, or what is wrong in the folder."""
+    try:
+        table = _Table(folder, build)
+    except DustError as error:
+        return None, error
+    return table, [case for case in cases if not table.has(case)]
+
+
+def _until_stop(outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
+    """The outcomes up to the first after which there is no point in going on."""
+    for outcome in outcomes:
+        yield outcome
+        if outcome.stop is not None:
+            return
+
+
+def _then_gather(mine: Iterable[Outcome], world: Any) -> Generator[Outcome, None, None]:
+    """Rank 0's own outcomes as they come, then those of the others, who wait for this also if it is closed before."""
+    try:
+        yield from mine
+    finally:
+        others = world.gather([])[1:]
+    for outcomes in others:
         yield from outcomes
 
 

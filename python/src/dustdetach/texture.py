@@ -25,10 +25,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidInput
-from .files import replace_file
-from .impact import Impact
-from .session import lammps_session
+from .errors import InvalidInput, shown
+from .files import as_path, read_text, replace_file, scratch_folder
+from .impact import Impact, finite_number
+from .session import lammps_file, lammps_session
 
 HEADER = "# dust texture 1"
 
@@ -90,14 +90,14 @@ class Distribution:
     def __post_init__(self) -> None:
         if self.kind not in DISTRIBUTIONS:
             allowed = ", ".join(DISTRIBUTIONS)
-            raise InvalidInput(f"--distribution: unknown choice '{self.kind}'; allowed: {allowed}")
+            raise InvalidInput(f"--distribution: unknown choice {shown(self.kind)}; allowed: {allowed}")
         least = 1.0 if self.kind == "lognormal" else 0.0
         for name, value, low in (("median diameter", self.median, 0.0), ("spread", self.spread, least)):
-            if not (value > low and math.isfinite(value)):
+            if not finite_number("distribution", value) > low:
                 raise InvalidInput(f"--distribution: {name} {value:g} is out of range; allowed: above {low:g}")
 
 
-def make_texture(impact: Impact, path: Path, distribution: Distribution | None = None) -> None:
+def make_texture(impact: Impact, path: str | Path, distribution: Distribution | None = None) -> None:
     """Make the texture of an impact (its coverage, bare cap, diameters and seed) and write it to a file.
 
     The grains are placed by ``fix dust/detach``, so that an impact with the same parameters has the same ones.
@@ -108,24 +108,34 @@ def make_texture(impact: Impact, path: Path, distribution: Distribution | None =
         distribution: sizes of the grains, in place of the impact's grain diameter.
 
     Raises:
-        InvalidInput: the coverage cannot be placed.
+        InvalidInput: the coverage cannot be placed, or there can be no file of this name.
+        MachineFault: the disk is full.
     """
+    path = as_path(path, "--out")
     sizes = f" distribution {distribution.kind} {distribution.median!r} {distribution.spread!r}" if distribution else ""
-    with replace_file(path) as part, lammps_session() as lmp:
-        lmp.commands_list(
-            [
-                "units si",
-                "atom_style sphere",
-                f"region box block -{impact.carrier_diameter!r} {impact.carrier_diameter!r} "
-                f"-{impact.carrier_diameter!r} {impact.carrier_diameter!r} "
-                f"-{impact.carrier_diameter!r} {impact.carrier_diameter!r}",
-                "create_box 1 box",
-                "create_atoms 1 single 0 0 0",
-                f"set atom 1 diameter {impact.carrier_diameter!r}",
-                f"fix dust all dust/detach texture monolayer {impact.grain_diameter!r} coverage {impact.coverage!r} "
-                f'seed {impact.seed} bare {impact.bare!r}{sizes} write "{part}"',
-            ]
-        )
+    # LAMMPS takes no quote in a name, so it writes to another place
+    with scratch_folder() as folder:
+        grains = folder / "texture"
+        with lammps_session() as lmp:
+            lmp.commands_list(_placement(impact, sizes, grains))
+        text = read_text(grains)
+    with replace_file(path) as part:
+        part.write_text(text)
+
+
+def _placement(impact: Impact, sizes: str, grains: Path) -> list[str]:
+    """The commands that place the grains of an impact and write them to a file."""
+    side = f"-{impact.carrier_diameter!r} {impact.carrier_diameter!r}"
+    return [
+        "units si",
+        "atom_style sphere",
+        f"region box block {side} {side} {side}",
+        "create_box 1 box",
+        "create_atoms 1 single 0 0 0",
+        f"set atom 1 diameter {impact.carrier_diameter!r}",
+        f"fix dust all dust/detach texture monolayer {impact.grain_diameter!r} coverage {impact.coverage!r} "
+        f"seed {impact.seed} bare {impact.bare!r}{sizes} write {lammps_file(grains, 'TMPDIR')}",
+    ]
 
 
 def read_texture(path: Path) -> Texture:
