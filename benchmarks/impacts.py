@@ -268,7 +268,7 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
 
 
 def paper(resolved: list[Result]) -> Iterator[str]:
-    """The numbers and trends of the paper's text with the limits of physics.md, section 5, in the resolved runs."""
+    """The numbers and trends of the paper's text with the limits of doc/validation.rst, in the resolved runs."""
     rows = {(row.restitution, row.angle, row.speed): row for row in resolved}
 
     def shares(share: str, cases: Iterable[tuple[float, float, float]]) -> list[float]:

@@ -18,5 +18,6 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   else()
     set(cache "$ENV{HOME}/.cache")
   endif()
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env "CCACHE_DIR=${cache}/dustdetach/ccache" CCACHE_NOHASHDIR=1 "${CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env "CCACHE_DIR=${cache}/dustdetach/ccache" CCACHE_NOHASHDIR=1
+                                  "${CCACHE}")
 endif()

@@ -13,5 +13,8 @@ endforeach()
 function(add_dust_to_lammps)
   target_sources(lammps PRIVATE ${DUST_STYLE_SOURCES} ${DUST_CORE_SOURCES})
   target_include_directories(lammps PRIVATE ${DUST_SOURCE_DIR})
+  # our warnings are about our files, not about the headers of LAMMPS that they include
+  set_property(SOURCE ${DUST_STYLE_SOURCES} APPEND PROPERTY
+               COMPILE_OPTIONS "-isystem${LAMMPS_SOURCE_DIR}" "-isystem${LAMMPS_SOURCE_DIR}/GRANULAR")
 endfunction()
 cmake_language(DEFER CALL add_dust_to_lammps)

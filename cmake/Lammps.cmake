@@ -4,8 +4,10 @@
 # differs by one integer crashes far from the cause. Hence the source of the same version (an installed LAMMPS
 # has too few headers), the same integer sizes and the same MPI.
 
-set(LAMMPS_SOURCE_DIR "$ENV{LAMMPS_SOURCE_DIR}" CACHE PATH "Top folder of an untouched LAMMPS tree (holds src/version.h)")
-set(LAMMPS_PREFIX "$ENV{LAMMPS_PREFIX}" CACHE PATH "Stock LAMMPS installed from that tree (bin/lmp), linked beside lmp-dust")
+set(LAMMPS_SOURCE_DIR "$ENV{LAMMPS_SOURCE_DIR}" CACHE PATH
+    "Top folder of an untouched LAMMPS tree (holds src/version.h)")
+set(LAMMPS_PREFIX "$ENV{LAMMPS_PREFIX}" CACHE PATH
+    "Stock LAMMPS installed from that tree (bin/lmp), linked beside lmp-dust")
 set(LAMMPS_SIZES smallbig CACHE STRING "Integer sizes of the host LAMMPS: smallbig (its default) or bigbig")
 set_property(CACHE LAMMPS_SIZES PROPERTY STRINGS smallbig bigbig)
 string(TOUPPER "${LAMMPS_SIZES}" DUST_SIZES)
@@ -17,7 +19,8 @@ if(NOT LAMMPS_SOURCE_DIR)
 elseif(NOT EXISTS "${LAMMPS_SOURCE_DIR}/src/version.h")
   message(FATAL_ERROR "LAMMPS_SOURCE_DIR=${LAMMPS_SOURCE_DIR} holds no src/version.h. " ${how_to_get_lammps})
 elseif(NOT DUST_SIZES MATCHES "^(SMALLBIG|BIGBIG)$")
-  message(FATAL_ERROR "LAMMPS_SIZES=${LAMMPS_SIZES}: must be smallbig or bigbig, as in the LAMMPS that loads the plugin")
+  message(FATAL_ERROR "LAMMPS_SIZES=${LAMMPS_SIZES}: must be smallbig or bigbig, as in the LAMMPS that loads the "
+                      "plugin")
 endif()
 
 # "4 Jul 2026" -> 20260704, the form in which the C library tells its version
@@ -45,7 +48,8 @@ find_package(MPI REQUIRED COMPONENTS CXX)
 
 # What every file that includes a LAMMPS header needs. MPI's headers only: its library comes with the host.
 add_library(lammps_headers INTERFACE)
-target_include_directories(lammps_headers SYSTEM INTERFACE "${LAMMPS_SOURCE_DIR}/src" "${LAMMPS_SOURCE_DIR}/src/GRANULAR"
+target_include_directories(lammps_headers SYSTEM INTERFACE
+                           "${LAMMPS_SOURCE_DIR}/src" "${LAMMPS_SOURCE_DIR}/src/GRANULAR"
                            "${LAMMPS_SOURCE_DIR}/src/PLUGIN" ${MPI_CXX_INCLUDE_DIRS})
 target_compile_definitions(lammps_headers INTERFACE ${MPI_CXX_COMPILE_DEFINITIONS})
 

@@ -4,10 +4,12 @@
 set(DUST_SOURCE_DIR "${CMAKE_CURRENT_LIST_DIR}/../src")
 get_filename_component(DUST_SOURCE_DIR "${DUST_SOURCE_DIR}" ABSOLUTE)
 file(GLOB DUST_CORE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/core/*.cpp")
+file(GLOB DUST_STYLE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/*.cpp")
+set(DUST_WARNINGS -Wall -Wextra -Wshadow)    # .ci/check allows none, of g++ and of clang++
+set_source_files_properties(${DUST_CORE_SOURCES} ${DUST_STYLE_SOURCES} PROPERTIES COMPILE_OPTIONS "${DUST_WARNINGS}")
 # changes no result, but a square root that may set errno costs a branch, and keeps the compiler from working on several
 # grains at once
-set_source_files_properties(${DUST_CORE_SOURCES} PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
-file(GLOB DUST_STYLE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/*.cpp")
+set_property(SOURCE ${DUST_CORE_SOURCES} APPEND PROPERTY COMPILE_OPTIONS -fno-math-errno -fno-trapping-math)
 foreach(kind gran_sub_mod fix compute command)
   set(pattern ${kind})
   if(kind STREQUAL "command")

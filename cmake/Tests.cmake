@@ -1,6 +1,6 @@
 # One program for each file test_*.cpp of unittest/core (no LAMMPS) and unittest/styles (a LAMMPS instance: lmp-dust as
-# a library), and the fronts with which unittest/plugin shows that a plugin made for another LAMMPS is refused. What drives
-# programs from outside (unittest/{plugin,decks,mpi}, python/tests) is pytest's, run by ./bootstrap test.
+# a library), and the fronts with which unittest/plugin shows that a plugin made for another LAMMPS is refused. What
+# drives programs from outside (unittest/{plugin,decks,mpi}, python/tests) is pytest's, run by ./bootstrap test.
 #
 # All of them are built by the target `tests` and by nothing else: whoever builds the package does not depend on them.
 
@@ -17,6 +17,7 @@ function(add_gtest folder file)
   set(target "${folder}_${name}")
   add_executable(${target} EXCLUDE_FROM_ALL "${file}")
   add_dependencies(tests ${target})
+  target_compile_options(${target} PRIVATE ${DUST_WARNINGS})
   target_link_libraries(${target} PRIVATE ${ARGN} GTest::gtest_main)
   target_include_directories(${target} PRIVATE src src/core unittest unittest/${folder})
   target_compile_definitions(${target} PRIVATE DUST_INPUTS_DIR="${CMAKE_SOURCE_DIR}/lammps-inputs"
@@ -40,7 +41,8 @@ if(DUST_IN_TREE)
   foreach(file ${style_tests})
     add_gtest(styles "${file}" lammps_dust lammps_headers MPI::MPI_CXX)
     get_filename_component(name "${file}" NAME_WE)
-    target_compile_definitions(styles_${name} PRIVATE LAMMPS_${DUST_SIZES} LAMMPS_VERSION_NUMBER=${LAMMPS_VERSION_NUMBER})
+    target_compile_definitions(styles_${name} PRIVATE LAMMPS_${DUST_SIZES}
+                               LAMMPS_VERSION_NUMBER=${LAMMPS_VERSION_NUMBER})
   endforeach()
 endif()
 

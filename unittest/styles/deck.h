@@ -5,6 +5,7 @@
 
 #include "detach_columns.h"
 #include "library.h"
+#include "lmptype.h"
 
 #include <gtest/gtest.h>
 
@@ -108,6 +109,8 @@ class Deck {
     for (int k = 0; k < rows; k++) all.emplace_back(array[k], array[k] + LAMMPS_NS::DetachRow::SIZE);
     return all;
   }
+  // IDs of the atoms: 32 or 64 bits wide, as LAMMPS was built
+  const LAMMPS_NS::tagint *tags() const { return static_cast<LAMMPS_NS::tagint *>(lammps_extract_atom(lmp, "id")); }
   const double *atom(const char *name, int id) const
   {
     return static_cast<double **>(lammps_extract_atom(lmp, name))[local(id)];
@@ -117,7 +120,7 @@ class Deck {
  private:
   int local(int id) const
   {
-    const int *tag = static_cast<int *>(lammps_extract_atom(lmp, "id"));
+    const LAMMPS_NS::tagint *tag = tags();
     const int n = static_cast<int>(lammps_extract_setting(lmp, "nlocal"));
     for (int i = 0; i < n; i++)
       if (tag[i] == id) return i;

@@ -196,7 +196,7 @@ TEST(CreateDust, ComputeKnowsWhichCarrierHoldsAGrain)
   dusty_carriers(deck, 3);
   deck("run 1 post no");
   const auto *label = static_cast<double *>(lammps_extract_compute(deck.lmp, "tied", LMP_STYLE_ATOM, LMP_TYPE_VECTOR));
-  const int *tag = static_cast<int *>(lammps_extract_atom(deck.lmp, "id"));
+  const LAMMPS_NS::tagint *tag = deck.tags();
   ASSERT_NE(label, nullptr);
   for (int i = 0; i < static_cast<int>(lammps_get_natoms(deck.lmp)); i++) {
     ASSERT_EQ(label[i], tag[i] <= 3 ? 0.0 : 1.0 + (tag[i] - 4) / 225)
