@@ -5,7 +5,7 @@
 #ifndef LMP_DUST_DETACH_SETTINGS_H
 #define LMP_DUST_DETACH_SETTINGS_H
 
-#include "core/detachment.h"
+#include "core/criteria.h"
 #include "dust_options.h"
 
 #include <string>

@@ -45,7 +45,7 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), steps(0.0), began(nullptr),
     newcomers(true), mine{}, open_windows(0), too_soft(1.0), warned(false), exchange_room(0)
 {
-  work.locate = settings.keep_rows || settings.lose_mass;
+  collisions.work.locate = settings.keep_rows || settings.lose_mass;
   check_order();    // of what is there already; the rest before a run
 
   scalar_flag = vector_flag = global_freq = 1;
@@ -98,7 +98,7 @@ void FixDustDetach::build()
   texture = settings.texture(carrier_radius);
   const Dust::Material material = {settings.density,  settings.surface_energy, settings.modulus(),
                                    settings.friction, settings.rolling,        settings.damping};
-  functions = std::make_unique<Dust::DetachmentFunctions>(texture, material, settings.criteria);
+  functions = std::make_unique<Dust::GrainTable>(texture, material, settings.criteria);
 
   // a number that tells this texture from another one in a restart file
   texture_checksum = 0.0;
@@ -114,7 +114,7 @@ void FixDustDetach::build()
   if (comm->me == 0) {
     utils::logmesg(
         lmp, "Fix dust/detach {}: {} grains a carrier, mean mass {:.5g}, pull-off acceleration {:.5g} to {:.5g}\n", id,
-        functions->grains(), functions->mean_mass(), functions->least_hold(), functions->largest_hold());
+        functions->grains(), functions->mean_mass(), functions->min_hold(), functions->max_hold());
   }
 }
 
@@ -269,7 +269,7 @@ void FixDustDetach::post_force(int /*vflag*/)
   const double dt = update->dt;
   const int *const states = state;    // does not move in this loop
 
-  const bool busy = idle.size() < collisions.size();
+  const bool busy = collisions.any_taken();
 
   const auto squared = [](const double *v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
   constexpr int BLOCK = 256;    // spins that are asked for twice are still in the cache then
@@ -355,7 +355,7 @@ void FixDustDetach::collide(int i)
   if (state[i] == FREE_FLIGHT) began[i] = steps;
   if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
-  if (collision.step(*functions, motion, settings.stiffen_time * update->dt, attached[i], work)) record(i);
+  if (collision.step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work)) record(i);
   const bool grows = !collision.weak() || settings.criteria.tangential == Dust::Criteria::INTEGRATE;
   if (grows) make_exchange_room(collision);
   if (collision.at_rest()) finish_collision(i, AT_REST);
@@ -365,7 +365,7 @@ void FixDustDetach::collide(int i)
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
-  state[i] = start_collision();
+  state[i] = collisions.take();
   Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
   if (settings.rotation) now.turn_by(angle[i], 1.0);
   collisions[state[i]].begin(now, motion.spin);
@@ -378,18 +378,18 @@ void FixDustDetach::finish_collision(int i, int next)
 {
   Dust::Collision &collision = collisions[state[i]];
   const Dust::Motion motion = motion_of(i);
-  if (collision.end(*functions, motion.spin, attached[i], work)) record(i);
+  if (collision.end(*functions, motion.spin, attached[i], collisions.work)) record(i);
   const double peak = collision.peak_acceleration();
   array_atom[i][PEAK_ACCELERATION] = peak;
   mine.collisions += 1.0;
   mine.north += collision.lost_north(*functions, attached[i]);
   mine.sliding += collision.grains_that(Dust::SLIDING, *functions, attached[i]);
   mine.rolling += collision.grains_that(Dust::ROLLING, *functions, attached[i]);
-  retire(state[i]);
+  collisions.give_back(state[i]);
   state[i] = next;
   if (next == FREE_FLIGHT) leave_contact(i);
 
-  if (!warned && peak <= functions->least_hold() && peak * too_soft > functions->least_hold()) {
+  if (!warned && peak <= functions->min_hold() && peak * too_soft > functions->min_hold()) {
     warned = true;
     error
         ->warning(FLERR,
@@ -414,22 +414,10 @@ void FixDustDetach::spin_off(int i)
   const Dust::Motion motion = motion_of(i);
   if (!functions->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
   begin_collision(i, motion);
-  if (collisions[state[i]].step(*functions, motion, settings.stiffen_time * update->dt, attached[i], work)) record(i);
-  retire(state[i]);
+  if (collisions[state[i]].step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work))
+    record(i);
+  collisions.give_back(state[i]);
   state[i] = FREE_FLIGHT;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixDustDetach::start_collision()
-{
-  if (idle.empty()) {
-    collisions.emplace_back();
-    return static_cast<int>(collisions.size()) - 1;
-  }
-  const int index = idle.back();
-  idle.pop_back();
-  return index;
 }
 
 /* ----------------------------------------------------------------------
@@ -438,19 +426,11 @@ int FixDustDetach::start_collision()
 
 void FixDustDetach::drop_lost_collisions()
 {
-  if (idle.size() == collisions.size()) return;
-  std::vector<bool> used(collisions.size(), false);
+  if (!collisions.any_taken()) return;
+  std::vector<bool> taken(collisions.capacity(), false);
   for (int i = 0; i < atom->nlocal; i++)
-    if (state[i] >= 0) used[state[i]] = true;
-  idle.clear();
-  for (size_t k = 0; k < used.size(); k++)
-    if (!used[k]) retire(static_cast<int>(k));
-}
-
-void FixDustDetach::retire(int index)
-{
-  collisions[index].release(work);
-  idle.push_back(index);
+    if (state[i] >= 0) taken[state[i]] = true;
+  collisions.keep_only(taken);
 }
 
 /* ----------------------------------------------------------------------
@@ -463,10 +443,10 @@ void FixDustDetach::record(int i)
   const double *x = atom->x[i], *v = atom->v[i], *f = atom->f[i];
   const double velocity[3] = {v[0] + half_kick * f[0], v[1] + half_kick * f[1], v[2] + half_kick * f[2]};
   double lost = 0.0;
-  for (const Dust::Detachment &d : work.detached) {
+  for (const Dust::Detachment &d : collisions.work.detached) {
     mine.modes[d.mode] += 1.0;
     lost += functions->weight(d.bit);
-    if (!work.locate) continue;
+    if (!collisions.work.locate) continue;
     const int number = functions->grain(d.bit);
     const Dust::Grain &grain = texture.grains[number];
     const double distance = carrier_radius + grain.radius, *n = d.direction, *w = d.velocity;
@@ -483,10 +463,10 @@ void FixDustDetach::record(int i)
     }
   }
   mine.weight += lost;
-  array_atom[i][ATTACHED] -= double(work.detached.size());
+  array_atom[i][ATTACHED] -= double(collisions.work.detached.size());
   array_atom[i][MASS] += lost * functions->mean_mass();
   window_mass[i] += lost * functions->mean_mass();
-  work.detached.clear();
+  collisions.work.detached.clear();
   open_windows = 2;    // this one, and the next to show that nothing more came
 }
 
@@ -584,9 +564,7 @@ double FixDustDetach::memory_usage()
 {
   const double words = functions ? functions->words() : 0;
   const double numbers = words + NCOLUMNS + 2 + orientation_size();
-  double bytes = double(atom->nmax) * (sizeof(int) + numbers * sizeof(double));
-  for (const Dust::Collision &collision : collisions)
-    bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
+  const double bytes = double(atom->nmax) * (sizeof(int) + numbers * sizeof(double)) + collisions.memory_usage();
   return bytes + (events.capacity() + rows.capacity()) * sizeof(rows[0]) + losses.capacity() * sizeof(Loss);
 }
 
@@ -873,8 +851,9 @@ int FixDustDetach::pack(int i, double *buf) const
   std::memcpy(p, attached[i], words * sizeof(uint64_t));
   p += words;
   if (state[i] >= 0) {
-    collisions[state[i]].pack(p);
-    p += collisions[state[i]].packed_size();
+    Dust::Packer packer(p);
+    collisions[state[i]].pack(packer);
+    p += packer.size();
   }
   return static_cast<int>(p - buf);
 }
@@ -899,8 +878,9 @@ void FixDustDetach::unpack(int i, const double *buf)
   std::memcpy(attached[i], p, words * sizeof(uint64_t));
   p += words;
   if (state[i] == 0) {
-    state[i] = start_collision();
-    collisions[state[i]].unpack(p);
+    state[i] = collisions.take();
+    Dust::Unpacker unpacker(p);
+    collisions[state[i]].unpack(unpacker);
     make_exchange_room(collisions[state[i]]);
   }
 }

@@ -13,11 +13,10 @@ FixStyle(dust/detach,FixDustDetach);
 
 #include "fix.h"
 
-#include "core/detachment.h"
+#include "core/collision_pool.h"
 #include "detach_settings.h"
 
 #include <array>
-#include <deque>
 #include <memory>
 #include <vector>
 
@@ -61,7 +60,7 @@ class FixDustDetach : public Fix {
   // texture, once the size of the carriers is known
   double carrier_radius;    // 0 until then
   Dust::Texture texture;
-  std::unique_ptr<Dust::DetachmentFunctions> functions;
+  std::unique_ptr<Dust::GrainTable> functions;
   double texture_checksum;
   void build();
 
@@ -80,11 +79,8 @@ class FixDustDetach : public Fix {
   void weigh();
 
   // collisions under way on this rank
-  std::deque<Dust::Collision> collisions;    // so that more of them move none
-  std::vector<int> idle;
-  int start_collision();
+  Dust::CollisionPool collisions;
   void drop_lost_collisions();
-  void retire(int);
   Dust::Motion motion_of(int) const;
   static constexpr int TURN_EVERY = 16;
   void turn();
@@ -109,7 +105,6 @@ class FixDustDetach : public Fix {
   template <typename Question> double sum_under_way(Question) const;
 
   // detachments
-  Dust::Workspace work;
   static constexpr int NROW = 11;
   using Row = std::array<double, NROW>;
   std::vector<Row> events, rows;    // of this window and of the last complete one

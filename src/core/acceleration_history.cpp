@@ -16,8 +16,8 @@ void AccelerationHistory::clear()
   motions.clear();
   levels.clear();
   in_tree = 0;
-  largest = 0;
-  turned = false;
+  peak_at = 0;
+  any_rotated = false;
   size2_of_peak = 0.0;
 }
 
@@ -25,16 +25,16 @@ void AccelerationHistory::clear()
    a motion matters to no grain if it lies between none and another one: g is linear in it, but for the spin
 ------------------------------------------------------------------------- */
 
-void AccelerationHistory::add(const Motion &motion, double size2, bool turns)
+void AccelerationHistory::add(const Motion &motion, double size2, bool rotates)
 {
-  turned = turned || turns;
+  any_rotated = any_rotated || rotates;
   const auto covers = [this](const Motion &q, double q2, const Motion &p) {
-    return is_between(split(p.acceleration, q.acceleration, q2), q2) && !(turned && (p.turns() || q.turns()));
+    return is_between(split(p.acceleration, q.acceleration, q2), q2) && !(any_rotated && (p.rotates() || q.rotates()));
   };
   size_t n = motions.size();
-  if (!turns) {
+  if (!rotates) {
     if (n && size2 <= size2_of_peak && covers(peak(), size2_of_peak, motion)) return;
-    if (n > largest + 1) {
+    if (n > peak_at + 1) {
       const Motion &last = motions[n - 1];
       if (covers(last, dot(last.acceleration, last.acceleration), motion)) return;
     }
@@ -45,8 +45,8 @@ void AccelerationHistory::add(const Motion &motion, double size2, bool turns)
   if (n == motions.capacity()) motions.reserve(std::max<size_t>(8, n < 64 ? 2 * n : 4 * n));
   motions.push_back(motion);
   in_tree = std::min(in_tree, n);
-  if (size2 > size2_of_peak || largest >= n) {
-    largest = n;
+  if (size2 > size2_of_peak || peak_at >= n) {
+    peak_at = n;
     size2_of_peak = size2;
   }
 }
@@ -77,10 +77,10 @@ AccelerationHistory::Sphere AccelerationHistory::around(size_t level, size_t fir
   for (size_t i = 0; i < BRANCH; i++) {
     const Sphere part = member(level, first + i);
     const Motion &m = part.centre, &c = s.centre;
-    const double turning = distance(m.angular_acceleration, c.angular_acceleration) + spin_difference(m.spin, c.spin);
+    const double rotation = distance(m.angular_acceleration, c.angular_acceleration) + spin_difference(m.spin, c.spin);
     constexpr double ROUND_OFF = 1.0 + 1.0e-12;
     s.radius = std::max(s.radius, (distance(m.acceleration, c.acceleration) + part.radius) * ROUND_OFF);
-    s.turning = std::max(s.turning, (turning + part.turning) * ROUND_OFF);
+    s.rotation = std::max(s.rotation, (rotation + part.rotation) * ROUND_OFF);
   }
   return s;
 }
@@ -104,29 +104,36 @@ void AccelerationHistory::update_tree() const
 
 /* ---------------------------------------------------------------------- */
 
-double AccelerationHistory::largest_push(const double *n, double shell, size_t &hint) const
+double AccelerationHistory::max_push(const double *n, double shell, size_t &hint) const
 {
   const auto push = [&](size_t i) { return -motions[i].lift(n, shell); };
-  if (push(largest) > push(hint)) hint = largest;
-  double most = push(hint);
-  search([&](const Sphere &s) { return s.size(shell) - s.centre.lift(n, shell) > most; },
+  if (push(peak_at) > push(hint)) hint = peak_at;
+  double max = push(hint);
+  search([&](const Sphere &s) { return s.size(shell) - s.centre.lift(n, shell) > max; },
          [&](size_t i) {
-           if (push(i) > most) {
+           if (push(i) > max) {
              hint = i;
-             most = push(i);
+             max = push(i);
            }
            return false;
          });
-  return most;
+  return max;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void AccelerationHistory::assign(const Motion *first, size_t count, size_t peak_index, double peak2)
+void AccelerationHistory::pack(Packer &packer) const
+{
+  packer.put(static_cast<double>(peak_at));
+  packer.put(size2_of_peak);
+  packer.put(motions);
+}
+
+void AccelerationHistory::unpack(Unpacker &unpacker)
 {
   clear();
-  motions.assign(first, first + count);
-  for (const Motion &m : motions) turned = turned || m.turns();
-  largest = peak_index;
-  size2_of_peak = peak2;
+  peak_at = static_cast<size_t>(unpacker.number());
+  size2_of_peak = unpacker.number();
+  unpacker.get(motions);
+  for (const Motion &m : motions) any_rotated = any_rotated || m.rotates();
 }

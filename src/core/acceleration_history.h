@@ -6,6 +6,7 @@
 #define DUST_CORE_ACCELERATION_HISTORY_H
 
 #include "motion.h"
+#include "pack.h"
 
 #include <cstddef>
 #include <vector>
@@ -32,26 +33,26 @@ inline bool is_between(const Split &s, double q2)
 
 /*! The motions of a collision, along the carrier's own axes, as far as any of them can matter most to some grain
  *
- * Straight impacts and steady sliding leave one. Where the acceleration turns or the carrier does, all of them stay, in a
- * tree of bounding spheres, so that a question about them looks at few. */
+ * Straight impacts and steady sliding leave one. Where the acceleration changes its direction or the carrier rotates,
+ * all of them stay, in a tree of bounding spheres, so that a question about them looks at few. */
 class AccelerationHistory {
  public:
   void clear();
 
   /*! Adds a motion
-   *  \param size2  square of its acceleration
-   *  \param turns  whether its angular acceleration or spin matter */
-  void add(const Motion &motion, double size2, bool turns);
+   *  \param size2    square of its acceleration
+   *  \param rotates  whether its angular acceleration or spin matter */
+  void add(const Motion &motion, double size2, bool rotates);
 
   bool empty() const { return motions.empty(); }
   /*! The motion of the largest acceleration; there must be one */
-  const Motion &peak() const { return motions[largest]; }
-  double peak2() const { return size2_of_peak; }
-  bool any_turns() const { return turned; }
+  const Motion &peak() const { return motions[peak_at]; }
+  double peak2() const { return size2_of_peak; }    //!< square of its acceleration
+  bool any_rotates() const { return any_rotated; }
 
   /*! Largest push on a grain, a.n less the centrifugal acceleration; there must be a motion
    *  \param hint  0 at first; keeps the answer's place, which is near that for a similar direction */
-  double largest_push(const double *n, double shell, size_t &hint) const;
+  double max_push(const double *n, double shell, size_t &hint) const;
 
   /*! Whether excess(motion) > 0 for any motion
    *  \param slope  by how much excess changes at most per change of the acceleration, or of what alpha and omega add to
@@ -64,26 +65,27 @@ class AccelerationHistory {
                   [&](size_t i) { return excess(motions[i]) > 0.0; });
   }
 
-  /*! Its motions, for transfer to another rank and restart */
   const std::vector<Motion> &kept() const { return motions; }
-  size_t peak_index() const { return largest; }
-  /*! \param peak_index, peak2  as they were: to round-off, accelerations are as large in other axes */
-  void assign(const Motion *first, size_t count, size_t peak_index, double peak2);
+
+  // transfer to another rank and restart; with the peak as it was: to round-off, accelerations are as large in other
+  // axes
+  void pack(Packer &packer) const;
+  void unpack(Unpacker &unpacker);
 
  private:
   static constexpr size_t BRANCH = 8;
-  // g on a grain at the distance r differs by at most radius + r turning from that of the centre
+  // g on a grain at the distance r differs by at most radius + r rotation from that of the centre
   struct Sphere {
     Motion centre;
-    double radius, turning;
-    double size(double shell) const { return radius + shell * turning; }
+    double radius, rotation;
+    double size(double shell) const { return radius + shell * rotation; }
   };
   std::vector<Motion> motions;
   // each of BRANCH of the level below, the first of BRANCH motions; brought up to date when a question is asked
   mutable std::vector<std::vector<Sphere>> levels;
   mutable size_t in_tree = 0;    // the first motions: as they were when the tree was last up to date
-  size_t largest = 0;
-  bool turned = false;    // whether any motion turned that was kept for a while
+  size_t peak_at = 0;
+  bool any_rotated = false;    // whether any motion rotated that was kept for a while
   double size2_of_peak = 0.0;
 
   Sphere member(size_t level, size_t i) const;

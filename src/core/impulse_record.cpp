@@ -4,13 +4,11 @@
 
 #include "impulse_record.h"
 
-#include <cstring>
-
 using namespace Dust;
 
 void ImpulseRecord::clear()
 {
-  course.clear();
+  recorded.clear();
   steps_per_span = 1;
   steps_of_last = 0;
 }
@@ -19,31 +17,31 @@ void ImpulseRecord::clear()
 
 void ImpulseRecord::add(const double *a, const double *spin, double dt)
 {
-  if (course.empty()) {
-    course.reserve(MOST);    // once in the life of a record
-    course.push_back({});
+  if (recorded.empty()) {
+    recorded.reserve(MAX_SPANS);    // once in the life of a record
+    recorded.push_back({});
   } else if (steps_of_last == steps_per_span) {
-    if (course.size() == MOST) merge_neighbours();
-    course.push_back({});
+    if (recorded.size() == MAX_SPANS) merge_neighbours();
+    recorded.push_back({});
     steps_of_last = 0;
   }
-  Span &last = course.back();
+  Span &last = recorded.back();
   last.duration += dt;
   for (int d = 0; d < 3; d++) {
     last.impulse[d] += a[d] * dt;
-    last.turn[d] += spin[d] * dt;
+    last.angle[d] += spin[d] * dt;
   }
   steps_of_last++;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void ImpulseRecord::turn_to(const Quaternion &axes)
+void ImpulseRecord::to_body(const Quaternion &orientation)
 {
-  if (axes.is_none()) return;
-  for (Span &span : course) {
-    axes.to_body(span.impulse, span.impulse);
-    axes.to_body(span.turn, span.turn);
+  if (orientation.is_identity()) return;
+  for (Span &span : recorded) {
+    orientation.to_body(span.impulse, span.impulse);
+    orientation.to_body(span.angle, span.angle);
   }
 }
 
@@ -51,38 +49,34 @@ void ImpulseRecord::turn_to(const Quaternion &axes)
 
 void ImpulseRecord::merge_neighbours()
 {
-  static_assert(MOST % 2 == 0, "spans are merged in pairs");
-  for (int k = 0; k < MOST / 2; k++) {
-    const Span &b = course[2 * k + 1];
-    Span sum = course[2 * k];
+  static_assert(MAX_SPANS % 2 == 0, "spans are merged in pairs");
+  for (int k = 0; k < MAX_SPANS / 2; k++) {
+    const Span &b = recorded[2 * k + 1];
+    Span sum = recorded[2 * k];
     sum.duration += b.duration;
     for (int d = 0; d < 3; d++) {
       sum.impulse[d] += b.impulse[d];
-      sum.turn[d] += b.turn[d];
+      sum.angle[d] += b.angle[d];
     }
-    course[k] = sum;
+    recorded[k] = sum;
   }
-  course.resize(MOST / 2);
+  recorded.resize(MAX_SPANS / 2);
   steps_per_span *= 2;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void ImpulseRecord::pack(double *buf) const
+void ImpulseRecord::pack(Packer &packer) const
 {
-  if (course.empty()) return;
-  *buf++ = steps_per_span;
-  *buf++ = steps_of_last;
-  std::memcpy(buf, course.data(), course.size() * sizeof(Span));
+  packer.put(steps_per_span);
+  packer.put(steps_of_last);
+  packer.put(recorded);
 }
 
-void ImpulseRecord::unpack(const double *buf, int size)
+void ImpulseRecord::unpack(Unpacker &unpacker)
 {
-  clear();
-  if (size == 0) return;
-  steps_per_span = static_cast<int>(*buf++);
-  steps_of_last = static_cast<int>(*buf++);
-  course.reserve(MOST);
-  course.resize((size - 2) / SPAN_SIZE);
-  std::memcpy(course.data(), buf, course.size() * sizeof(Span));
+  steps_per_span = static_cast<int>(unpacker.number());
+  steps_of_last = static_cast<int>(unpacker.number());
+  recorded.reserve(MAX_SPANS);
+  unpacker.get(recorded);
 }

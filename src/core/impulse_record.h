@@ -5,25 +5,26 @@
 #ifndef DUST_CORE_IMPULSE_RECORD_H
 #define DUST_CORE_IMPULSE_RECORD_H
 
+#include "pack.h"
 #include "quaternion.h"
 
 #include <vector>
 
 namespace Dust {
 
-/*! The course of a collision in bounded memory: impulses per carrier mass, and how far it turned, over spans of time
+/*! The course of a collision in bounded memory: impulses per carrier mass, and angles of turning, over spans of time
  *
- * A span takes so many time steps. When there are MOST spans, neighbours become one, and spans are twice as long from
- * there on: a collision is recorded in MOST/2 to MOST of them, or in its time steps if these are fewer. The
- * sums are exact, whatever the number. */
+ * A span takes so many time steps. When there are MAX_SPANS spans, neighbours become one, and spans are twice as long
+ * from there on: a collision is recorded in MAX_SPANS/2 to MAX_SPANS of them, or in its time steps if these are fewer.
+ * The sums are exact, whatever the number. */
 class ImpulseRecord {
  public:
-  static constexpr int MOST = 64;
+  static constexpr int MAX_SPANS = 64;
 
   struct Span {
     double duration;
     double impulse[3];    // contact force/carrier mass, integrated over the time steps
-    double turn[3];       // spin, integrated likewise
+    double angle[3];      // spin, integrated likewise
   };
 
   void clear();
@@ -31,19 +32,17 @@ class ImpulseRecord {
   /*! One time step */
   void add(const double *acceleration, const double *spin, double dt);
 
-  const std::vector<Span> &spans() const { return course; }
+  const std::vector<Span> &spans() const { return recorded; }
 
-  /*! What came in space, along the axes of a body */
-  void turn_to(const Quaternion &axes);
+  /*! Resolves what came in space along the axes of a body */
+  void to_body(const Quaternion &orientation);
 
-  // transfer to another rank and restart, as numbers
-  int packed_size() const { return course.empty() ? 0 : static_cast<int>(2 + SPAN_SIZE * course.size()); }
-  void pack(double *buf) const;
-  void unpack(const double *buf, int size);
+  // transfer to another rank and restart
+  void pack(Packer &packer) const;
+  void unpack(Unpacker &unpacker);
 
  private:
-  static constexpr int SPAN_SIZE = sizeof(Span) / sizeof(double);
-  std::vector<Span> course;
+  std::vector<Span> recorded;
   int steps_per_span = 1;
   int steps_of_last = 0;    // in the last span
   void merge_neighbours();

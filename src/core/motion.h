@@ -27,22 +27,22 @@ struct Motion {
   double angular_acceleration[3];    //!< alpha = contact torque / moment of inertia
   double spin[3];                    //!< omega
 
-  /*! The same with its vectors along the axes of a body */
-  Motion along(const Quaternion &axes) const
+  /*! The same with its vectors along the axes of a body of this orientation */
+  Motion in_body(const Quaternion &orientation) const
   {
     Motion m = *this;
-    if (axes.is_none()) return m;
-    axes.to_body(acceleration, m.acceleration);
-    if (!turns()) return m;
-    axes.to_body(angular_acceleration, m.angular_acceleration);
-    axes.to_body(spin, m.spin);
+    if (orientation.is_identity()) return m;
+    orientation.to_body(acceleration, m.acceleration);
+    if (!rotates()) return m;
+    orientation.to_body(angular_acceleration, m.angular_acceleration);
+    orientation.to_body(spin, m.spin);
     return m;
   }
 
-  bool turns() const { return dot(angular_acceleration, angular_acceleration) > 0.0 || dot(spin, spin) > 0.0; }
+  bool rotates() const { return dot(angular_acceleration, angular_acceleration) > 0.0 || dot(spin, spin) > 0.0; }
 
-  /*! |alpha| + omega^2: times |r|, at least what turning adds to g */
-  double turning() const { return std::sqrt(dot(angular_acceleration, angular_acceleration)) + dot(spin, spin); }
+  /*! |alpha| + omega^2: times |r|, at least what rotation adds to g */
+  double rotation_bound() const { return std::sqrt(dot(angular_acceleration, angular_acceleration)) + dot(spin, spin); }
 
   /*! Inertia force per mass on a grain that moves with its carrier, g = -(a + alpha x r + omega x (omega x r))
    *  \param n      direction of the grain

@@ -11,27 +11,27 @@
 
 using namespace Dust;
 
-MotionBound::MotionBound(const ImpulseRecord &record, const double *spin, double peak, double rolling,
-                         double carrier_radius) : peak(peak), rolling(rolling), carrier_radius(carrier_radius)
+MotionBound::MotionBound(const ImpulseRecord &record, const double *spin, double a_max, double theta_crit, double rp) :
+    peak(a_max), rolling(theta_crit), carrier_radius(rp)
 {
   double last[3] = {spin[0], spin[1], spin[2]}, before[3] = {0.0, 0.0, 0.0};
-  fastest = std::sqrt(dot(last, last));
+  max_spin = std::sqrt(dot(last, last));
   for (const ImpulseRecord::Span &span : record.spans()) {
     time += span.duration;
     for (int d = 0; d < 3; d++) axis[d] += span.impulse[d];
     double change[3], jump[3];
     for (int d = 0; d < 3; d++) {
-      const double mean = span.turn[d] / span.duration, force = span.impulse[d] / span.duration;
+      const double mean = span.angle[d] / span.duration, force = span.impulse[d] / span.duration;
       change[d] = mean - last[d];
       last[d] = mean;
       jump[d] = force - before[d];
       before[d] = force;
     }
-    fastest = std::max(fastest, std::sqrt(dot(last, last)));
-    spun += std::sqrt(dot(change, change));
-    changes += std::sqrt(dot(jump, jump));
+    max_spin = std::max(max_spin, std::sqrt(dot(last, last)));
+    spin_changes += std::sqrt(dot(change, change));
+    force_changes += std::sqrt(dot(jump, jump));
   }
-  changes += std::sqrt(dot(before, before));
+  force_changes += std::sqrt(dot(before, before));
   const double size = std::sqrt(dot(axis, axis));
   for (double &x : axis) x = size > 0.0 ? x / size : 0.0;
   for (const ImpulseRecord::Span &span : record.spans()) {
@@ -53,7 +53,7 @@ double MotionBound::spring(double hold, double shell) const
 double MotionBound::spin(double shell) const
 {
   const double grain = shell - carrier_radius;
-  return std::sqrt(shell * shell + 0.4 * grain * grain) * spun + 0.5 * shell * fastest * fastest * time;
+  return std::sqrt(shell * shell + 0.4 * grain * grain) * spin_changes + 0.5 * shell * max_spin * max_spin * time;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -61,35 +61,35 @@ double MotionBound::spin(double shell) const
 MotionBound::Bound MotionBound::of(const double *n, double hold, double shell) const
 {
   const double own = spring(hold, shell) + spin(shell);
-  const double turn = MARGIN * ((along + aside + own) / shell + fastest) * time;
+  const double angle = MARGIN * ((along + aside + own) / shell + max_spin) * time;
   const double u = dot(n, axis),
-               across = std::sqrt(std::max(0.0, 1.0 - u * u)) + turn;    // of the axis in the tangential plane
-  const double w = along * std::min(1.0, across) + aside + own + shell * fastest;
-  return {turn, MARGIN * w * w / shell};
+               across = std::sqrt(std::max(0.0, 1.0 - u * u)) + angle;    // of the axis in the tangential plane
+  const double w = along * std::min(1.0, across) + aside + own + shell * max_spin;
+  return {angle, MARGIN * w * w / shell};
 }
 
 /* ---------------------------------------------------------------------- */
 
-MotionBound::Largest MotionBound::of_any(double largest_hold, double largest_shell) const
+MotionBound::Max MotionBound::of_any(double max_hold, double max_shell) const
 {
-  const double v = along + aside + spring(largest_hold, carrier_radius) + spin(largest_shell);
-  const double turn = MARGIN * (v / carrier_radius + fastest) * time, w = v + largest_shell * fastest;
+  const double v = along + aside + spring(max_hold, carrier_radius) + spin(max_shell);
+  const double angle = MARGIN * (v / carrier_radius + max_spin) * time, w = v + max_shell * max_spin;
   const double centrifugal = MARGIN * w * w / carrier_radius;
-  return {peak * (1.0 + turn) + centrifugal, turn, centrifugal};
+  return {peak * (1.0 + angle) + centrifugal, angle, centrifugal};
 }
 
 /* ---------------------------------------------------------------------- */
 
-bool MotionBound::any_may_leave(double least_hold, double largest_hold, double largest_shell) const
+bool MotionBound::any_may_leave(double min_hold, double max_hold, double max_shell) const
 {
-  return of_any(largest_hold, largest_shell).outward > least_hold;
+  return of_any(max_hold, max_shell).outward > min_hold;
 }
 
 /* ---------------------------------------------------------------------- */
 
-bool MotionBound::any_may_ring_off(double least_hold, double largest_hold, double largest_shell) const
+bool MotionBound::any_may_ring_off(double min_hold, double max_hold, double max_shell) const
 {
-  const auto [outward, turn, centrifugal] = of_any(largest_hold, largest_shell);
+  const auto [outward, angle, centrifugal] = of_any(max_hold, max_shell);
   // |w|^2 goes up to its largest and down again, at most twice over: friction takes what was gained
-  return outward > 0.3 * least_hold || changes + turn * peak + 4.0 * centrifugal > 0.95 * least_hold;
+  return outward > 0.3 * min_hold || force_changes + angle * peak + 4.0 * centrifugal > 0.95 * min_hold;
 }

@@ -22,12 +22,12 @@ constexpr double PERIODS = 3.0;               // after the collision
 double overlap_of(double y) { return ROOT_6 * (2.0 * y * y * y - 4.0 / 3.0) * y; }
 double slope_of(double y) { return 1.0 / (ROOT_6 * (8.0 * y * y * y - 4.0 / 3.0)); }
 
-// y at rest under a load
-double at_rest(double load) { return std::cbrt(0.5 * (1.0 + std::sqrt(std::max(0.0, 1.0 - load)))); }
+// y of a grain that does not move under a load
+double quiet_y(double load) { return std::cbrt(0.5 * (1.0 + std::sqrt(std::max(0.0, 1.0 - load)))); }
 
 }    // namespace
 
-NormalMotion::NormalMotion(double damping) : damping(damping * std::sqrt(STIFFNESS)) { clear(); }
+NormalMotion::NormalMotion(double zeta) : damping(zeta * std::sqrt(STIFFNESS)) { clear(); }
 
 /* ---------------------------------------------------------------------- */
 
@@ -51,7 +51,7 @@ void NormalMotion::add(double hold, double breaking_gap, double load)
   gap[i] = breaking_gap;
   rate[i] = std::sqrt(hold / breaking_gap);
   G[i] = load;
-  y[i] = at_rest(load);
+  y[i] = quiet_y(load);
   D[i] = overlap_of(y[i]);
   slope[i] = slope_of(y[i]);
 }
@@ -61,12 +61,12 @@ void NormalMotion::add(double hold, double breaking_gap, double load)
 void NormalMotion::advance(const double *load, double dt)
 {
   // dF/dD = 4 (6 y^5 - 3 y^2) dy/dD is below 3 y^2/6^(1/3) + 1/2 on the branch up to where the load is -G
-  double fastest = 0.0;
+  double max_rate2 = 0.0;
   for (int i = 0; i < count; i++) {
-    const double most = std::max({y[i], at_rest(load[i]), at_rest(G[i])});
-    fastest = std::max(fastest, here[i] * rate[i] * rate[i] * (3.0 / ROOT_6 * most * most + 0.5));
+    const double max_y = std::max({y[i], quiet_y(load[i]), quiet_y(G[i])});
+    max_rate2 = std::max(max_rate2, here[i] * rate[i] * rate[i] * (3.0 / ROOT_6 * max_y * max_y + 0.5));
   }
-  advance(load, dt, 1 + static_cast<int>(dt * std::sqrt(fastest) / STEP));
+  advance(load, dt, 1 + static_cast<int>(dt * std::sqrt(max_rate2) / STEP));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -74,7 +74,7 @@ void NormalMotion::advance(const double *load, double dt)
 void NormalMotion::advance(const double *load, double dt, int steps)
 {
   // the branch ends where slope has no bound: y stays this far from there
-  constexpr double LEAST_Y = 1.02 * 0.5503212;    // 6^(-1/3)
+  constexpr double MIN_Y = 1.02 * 0.5503212;    // 6^(-1/3)
   double grow[LANES], h[LANES];
   for (int i = 0; i < LANES; i++) {
     grow[i] = i < count ? (load[i] - G[i]) / steps : 0.0;
@@ -86,12 +86,13 @@ void NormalMotion::advance(const double *load, double dt, int steps)
       const double drag = damping * y2 * step, force = G[i] + 4.0 * y3 * (y3 - 1.0);
       const double u = ((1.0 - drag) * U[i] - step * force) / (1.0 + drag), d = D[i] + step * u;
       // y goes on as it did, and one step of Newton's method
-      const double along = y[i] + step * u * slope[i], guess = along > LEAST_Y ? along : LEAST_Y,
+      const double along = y[i] + step * u * slope[i], guess = along > MIN_Y ? along : MIN_Y,
                    g3 = guess * guess * guess;
-      const double per = 1.0 / (ROOT_6 * (8.0 * g3 - 4.0 / 3.0));
-      const double more = (d - ROOT_6 * (2.0 * g3 - 4.0 / 3.0) * guess) * per, next = guess + (more < 0.1 ? more : 0.1);
-      y[i] = next > LEAST_Y ? next : LEAST_Y;
-      slope[i] = per;
+      const double guess_slope = 1.0 / (ROOT_6 * (8.0 * g3 - 4.0 / 3.0));
+      const double more = (d - ROOT_6 * (2.0 * g3 - 4.0 / 3.0) * guess) * guess_slope,
+                   next = guess + (more < 0.1 ? more : 0.1);
+      y[i] = next > MIN_Y ? next : MIN_Y;
+      slope[i] = guess_slope;
       U[i] = u;
       D[i] = d;
       G[i] += grow[i];
@@ -103,7 +104,7 @@ void NormalMotion::advance(const double *load, double dt, int steps)
 
 void NormalMotion::ring_out()
 {
-  double slowest = 0.0;
-  for (int i = 0; i < count; i++) slowest = std::max(slowest, here[i] / std::max(rate[i], 1e-300));
-  if (slowest > 0.0) advance(G, PERIODS * 2.0 * PI / std::sqrt(STIFFNESS) * slowest);
+  double max_time = 0.0;
+  for (int i = 0; i < count; i++) max_time = std::max(max_time, here[i] / std::max(rate[i], 1e-300));
+  if (max_time > 0.0) advance(G, PERIODS * 2.0 * PI / std::sqrt(STIFFNESS) * max_time);
 }

@@ -13,8 +13,8 @@ namespace Dust {
  *
  *   m d^2 delta/dt^2 = -F_n - F(delta) - 2 zeta sqrt(k0 m) (a/a0) d delta/dt,    k0 = (6/5) E* a0
  *
- * with F and delta of the whole stable branch (jkr.h), the damping being that of the resolved contact laws. The grain is off
- * where the branch ends, delta = -delta_c.
+ * with F and delta of the whole stable branch (jkr.h), the damping being that of the resolved contact laws. The grain
+ * is off where the branch ends, delta = -delta_c.
  *
  * In units of F_c and delta_c, times of sqrt(delta_c/c), c = F_c/m, and with y = sqrt(a/a0), D = delta/delta_c:
  *
@@ -25,8 +25,8 @@ class NormalMotion {
  public:
   static constexpr int LANES = 32;    // side by side, for the compiler's vectors
 
-  /*! \param damping  zeta, damping ratio at the equilibrium overlap */
-  explicit NormalMotion(double damping);
+  /*! \param zeta  damping ratio at the equilibrium overlap */
+  explicit NormalMotion(double zeta);
 
   /*! Takes away all grains */
   void clear();

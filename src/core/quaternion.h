@@ -14,10 +14,10 @@ struct Quaternion {
   double q[4] = {1.0, 0.0, 0.0, 0.0};
 
   /*! A vector with components along the body's axes, in space */
-  void to_space(const double *body, double *space) const { turn(q[0], body, space); }
+  void to_space(const double *body, double *space) const { rotate(q[0], body, space); }
 
   /*! A vector of space, along the body's axes */
-  void to_body(const double *space, double *body) const { turn(-q[0], space, body); }
+  void to_body(const double *space, double *body) const { rotate(-q[0], space, body); }
 
   /*! Turns the body for a time dt with the spin (of space, rad/time), which is that of the middle of the step */
   void turn_by(const double *spin, double dt)
@@ -39,12 +39,12 @@ struct Quaternion {
 
   /*! The same along the body's own axes */
   Quaternion operator*(const Quaternion &first) const;
-  bool is_none() const { return q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0; }
+  bool is_identity() const { return q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0; }
   Quaternion inverse() const { return {{q[0], -q[1], -q[2], -q[3]}}; }
 
  private:
   static void large_angle(double a2, double &c, double &s);
-  void turn(double w, const double *v, double *result) const
+  void rotate(double w, const double *v, double *result) const
   {
     // v + 2 w (u x v) + 2 u x (u x v) with u = (x, y, z)
     const double x = q[1], y = q[2], z = q[3];

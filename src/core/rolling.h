@@ -13,8 +13,8 @@ namespace Dust {
 
 /*! Moves the rolling displacement xi of an adhesive contact on: Dominik & Tielens, Philos. Mag. A 72, 783 (1995).
  *
- * xi is a vector in the tangential plane. It turns with the contact, keeping its length, grows with the rolling velocity
- * and is held at xi_crit, where the pivot gives way.
+ * xi is a vector in the tangential plane. It turns with the contact, keeping its length, grows with the rolling
+ * velocity and is held at xi_crit, where the pivot gives way.
  * \param xi        rolling displacement of the last step, changed
  * \param n         unit normal now
  * \param velocity  rolling velocity, in the tangential plane

@@ -9,40 +9,39 @@ namespace Dust {
 
 /*! Grains that slide and roll over their carrier in a collision
  *
- * A grain sits at the direction n and moves with w, tangential, relative to the carrier's centre. It spins with Omega, and
- * its contact is displaced by the rolling displacement xi. The carrier has the acceleration a and the spin omega;
+ * A grain sits at the direction n and moves with w, tangential, relative to the carrier's centre. It spins with Omega,
+ * and its contact is displaced by the rolling displacement xi. The carrier has the acceleration a and the spin omega;
  * |r_pd| = R_p + R_d; axes do not turn:
  *
  *   outward force    F_n = -m a.n + m |w|^2/|r_pd|                        the grain leaves when F_n > F_c
- *   friction         |f| <= mu_f |2 F_c - F_n|, against the slip u = w - R_d Omega x n - R_p omega x n or what would start it
+ *   friction         |f| <= mu_f |2 F_c - F_n|, against the slip u or what would start it
+ *   slip             u = w - R_d Omega x n - R_p omega x n
  *   along surface    m dw/dt = -m (a - (a.n) n) + f,    dn/dt = w/|r_pd|
  *   spin             (2/5) m R_d^2 dOmega/dt = -R_d n x f - k n x xi
  *   rolling          dxi/dt = R_12 (Omega - omega) x n, |xi| held at R_12 theta_crit
  *   its stiffness    k = 4 F_c (a/a0)^(3/2) = 2 F_c (1 + sqrt(1 - F_n/F_c))
  *
- * There is no normal motion: the contact follows its load at once (normal_motion.h follows it as it rings). Dominik & Tielens, Philos. Mag. A 72, 783 (1995)
- * for rolling; the limit of friction is that of the detachment functions.
+ * There is no normal motion: the contact follows its load at once (normal_motion.h follows it as it rings). Dominik &
+ * Tielens, Philos. Mag. A 72, 783 (1995) for rolling; the limit of friction is that of the detachment functions.
  *
- * Here all forces are per grain mass, c = F_c/m. In place of w, Omega and xi stand what a grain that turns with its carrier
- * has not: the velocity v = w - |r_pd| omega x n over the surface, the velocity p = R_d (Omega - omega) x n at which the rolling
- * contact moves over the grain, and the angle psi = xi/R_12:
+ * Here all forces are per grain mass, c = F_c/m. In place of w, Omega and xi stand what a grain that turns with its
+ * carrier has not: the velocity v = w - |r_pd| omega x n over the surface, the velocity p = R_d (Omega - omega) x n at
+ * which the rolling contact moves over the grain, and the angle psi = xi/R_12:
  *
  *   u = v - p,    dn/dt = v/|r_pd| + omega x n,    dpsi/dt = p/R_d,    s = (R_12/R_d) k/m
  *   dv/dt = -(a - (a.n) n) + f - |r_pd| (domega/dt) x n - (omega.n) n x w
  *   dp/dt = -(5/2) (f + s psi) - R_d (domega/dt) x n
  *
- * The last term of dv/dt is what (omega x n) itself changes by as n moves; dp/dt has none, as about n a grain is taken to
- * spin with its carrier.
+ * The last term of dv/dt is what (omega x n) itself changes by as n moves; dp/dt has none, as about n a grain is taken
+ * to spin with its carrier.
  *
- * A step is a leapfrog: half of dn and dpsi, all of dv and dp with the forces there, the other half. Friction is the one
- * that ends the slip within the step, or its limit: it sticks without a spring, at any step. */
+ * A step is a leapfrog: half of dn and dpsi, all of dv and dp with the forces there, the other half. Friction is the
+ * one that ends the slip within the step, or its limit: it sticks without a spring, at any step. */
 class SurfaceMotion {
  public:
   static constexpr int LANES = 32;    // side by side, for the compiler's vectors
 
-  /*! \param friction  mu_f
-   *  \param rolling   theta_crit */
-  SurfaceMotion(double friction, double rolling);
+  SurfaceMotion(double mu_f, double theta_crit);
 
   /*! Takes away all grains */
   void clear();
@@ -73,16 +72,14 @@ class SurfaceMotion {
       w2 += velocity(grain, d) * velocity(grain, d);
       an += a[d] * n[d][grain];
     }
-    return w2 * per_shell[grain] - an;
+    return w2 * inv_shell[grain] - an;
   }
 
   // the motion of a grain, at last when it left; vectors of the surface
   double direction(int grain, int d) const { return n[d][grain]; }
   double velocity(int grain, int d) const { return v[d][grain] + carried(grain, d) * shell[grain]; }    //!< w
-  double rolling_velocity(int grain, int d) const
-  {
-    return p[d][grain] + carried(grain, d) * radius[grain];
-  }                                                                         //!< R_d Omega x n
+  //! R_d Omega x n
+  double rolling_velocity(int grain, int d) const { return p[d][grain] + carried(grain, d) * radius[grain]; }
   double rolling_angle(int grain, int d) const { return psi[d][grain]; }    //!< xi/R_12
 
  private:
@@ -90,8 +87,8 @@ class SurfaceMotion {
   int count;
   // by grain
   double here[LANES];                                                         // 1 as long as it is attached, then 0
-  double hold[LANES], per_hold[LANES], stiffness[LANES];                      // c, 1/c, 2 c R_12/R_d
-  double shell[LANES], per_shell[LANES], radius[LANES], per_radius[LANES];    // |r_pd|, R_d
+  double hold[LANES], inv_hold[LANES], stiffness[LANES];                      // c, 1/c, 2 c R_12/R_d
+  double shell[LANES], inv_shell[LANES], radius[LANES], inv_radius[LANES];    // |r_pd|, R_d
   double n[3][LANES], psi[3][LANES];
   double v[3][LANES], p[3][LANES];    // of a grain that left: w and R_d Omega x n
   double omega[3];                    // of the carrier now

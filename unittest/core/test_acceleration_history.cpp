@@ -54,7 +54,7 @@ TEST(AccelerationHistory, AnswersAsALookAtEachMotionDoes)
           lift = std::max(lift, m.lift(n, SHELL));
           force = std::max(force, std::sqrt(dot(g, g)));
         }
-        EXPECT_EQ(history.largest_push(n, SHELL, hint), push);
+        EXPECT_EQ(history.max_push(n, SHELL, hint), push);
         // at limits just below and above the largest
         for (double part : {0.999, 1.001}) {
           const auto lifts = [&](const Motion &m) {

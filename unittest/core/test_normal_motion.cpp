@@ -108,7 +108,8 @@ TEST(NormalMotion, SqueezedSlowlyItStaysAndLetGoAtOnceItLeaves)
     grain.motion.ring_out();
     EXPECT_EQ(grain.motion.attached(0), share < 1.0);
   }
-  // in 1000 periods: along the branch at rest, also where it is pulled; it swings by the rate of the load over the frequency
+  // in 1000 periods: along the branch at rest, also where it is pulled; it swings by the rate of the load over the
+  // frequency
   Alone grain(0.0);
   for (double to : {-50.0, 0.0, 0.9}) {
     grain.advance(to, 6000.0 / FREQUENCY);

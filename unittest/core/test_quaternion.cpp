@@ -32,8 +32,8 @@ TEST(Quaternion, AQuarterTurnAboutZBringsXToY)
   expect_vector(v, 0.0, -1.0, 0.0, 1e-15);
 }
 
-// spin about a fixed axis: a million small steps end where one large one does; the round-off of steps adds up as a random
-// walk, 1e-16 sqrt(1e6)
+// spin about a fixed axis: a million small steps end where one large one does; the round-off of steps adds up as a
+// random walk, 1e-16 sqrt(1e6)
 TEST(Quaternion, SmallStepsAddUp)
 {
   const double spin[3] = {300.0, -200.0, 500.0}, v[3] = {0.2, 0.5, -0.7};
@@ -62,8 +62,8 @@ TEST(Quaternion, ProductTurnsByTheSecondFirst)
   expect_vector(both, v[0], v[1], v[2], 1e-14);
 }
 
-// a turned axis is uniform on the sphere and the angle of turn has the density (1 - cos)/pi, so that cos(angle/2)^2 = w^2
-// has the mean 1/4; standard errors at 20,000: 0.004 for a component, 0.002 for w^2. Four of them.
+// a turned axis is uniform on the sphere and the angle of turn has the density (1 - cos)/pi, so that cos(angle/2)^2 =
+// w^2 has the mean 1/4; standard errors at 20,000: 0.004 for a component, 0.002 for w^2. Four of them.
 TEST(Quaternion, RandomOrientationsAreEquallyLikely)
 {
   const int n = 20000;

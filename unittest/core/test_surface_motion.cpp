@@ -3,7 +3,7 @@
 
 #include "surface_motion.h"
 
-#include "detachment.h"
+#include "collision.h"
 #include "hamaker.h"
 #include "impulse_record.h"
 #include "jkr.h"
@@ -44,8 +44,8 @@ struct History {
   Vec spin_after(size_t k) const { return 0.5 * (spin[k] + spin[std::min(k + 1, spin.size() - 1)]); }
 };
 
-// largest F_n/F_c of a grain that is followed in forces, spin and displacement, in small steps: it leaves where this comes
-// to 1, and is followed on all the same, so that the answer tells by how much
+// largest F_n/F_c of a grain that is followed in forces, spin and displacement, in small steps: it leaves where this
+// comes to 1, and is followed on all the same, so that the answer tells by how much
 double largest_load(const Grain &grain, double carrier_radius, const Material &m, const History &h)
 {
   const double mass = 4.0 / 3.0 * M_PI * std::pow(grain.radius, 3) * m.density,
@@ -95,32 +95,34 @@ Motion motion_of(const History &h, size_t k)
 }
 
 // mode by grain, by Collision; handed over to another one every `handover` steps
-std::map<int, Mode> by_collision(const DetachmentFunctions &functions, const History &h, int handover = 0)
+std::map<int, Mode> by_collision(const GrainTable &table, const History &h, int handover = 0)
 {
   std::map<int, Mode> left;
-  std::vector<uint64_t> attached = functions.all_attached();
+  std::vector<uint64_t> attached = table.all_attached();
   Workspace work;
   Collision collision;
   const Motion earlier = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}};    // a collision before this one
   collision.begin(Quaternion(), earlier.spin);
-  collision.step(functions, earlier, 1.0, attached.data(), work);
+  collision.step(table, earlier, 1.0, attached.data(), work);
   collision.begin(Quaternion(), &h.spin0.x);
   for (size_t k = 0; k <= h.a.size(); k++) {
     if (k < h.a.size())
-      collision.step(functions, motion_of(h, k), h.dt, attached.data(), work);
+      collision.step(table, motion_of(h, k), h.dt, attached.data(), work);
     else
-      collision.end(functions, &h.spin.back().x, attached.data(), work);
-    for (const Detachment &d : work.detached) left[functions.grain(d.bit)] = d.mode;
+      collision.end(table, &h.spin.back().x, attached.data(), work);
+    for (const Detachment &d : work.detached) left[table.grain(d.bit)] = d.mode;
     work.detached.clear();
     if (handover && k % handover == 0) {
       std::vector<double> buf(collision.packed_size());
-      collision.pack(buf.data());
+      Packer packer(buf.data());
+      collision.pack(packer);
       Collision other;
-      std::vector<uint64_t> all = functions.all_attached();
+      std::vector<uint64_t> all = table.all_attached();
       other.begin(Quaternion(), earlier.spin);    // one that has been used
-      other.step(functions, earlier, 1.0, all.data(), work);
+      other.step(table, earlier, 1.0, all.data(), work);
       work.detached.clear();
-      other.unpack(buf.data());
+      Unpacker unpacker(buf.data());
+      other.unpack(unpacker);
       collision = std::move(other);
     }
   }
@@ -134,8 +136,8 @@ Vec random_direction(std::mt19937 &random)
   return {s * std::cos(phi), s * std::sin(phi), z};
 }
 
-// one to three pulses, each in a direction of its own; with spins of about `spin`, what each changes the spin by, and pulses
-// that begin and end smoothly within the collision
+// one to three pulses, each in a direction of its own; with spins of about `spin`, what each changes the spin by, and
+// pulses that begin and end smoothly within the collision
 History random_history(std::mt19937 &random, double spin = 0.0)
 {
   const auto u = [&]() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); };
@@ -172,7 +174,8 @@ struct Comparison {
   int tangential = 0, close = 0, stay = 0;
 };
 
-// random collisions of a texture against the reference; grains whose load comes as close as `tolerance` to 1 may do either
+// random collisions of a texture against the reference; grains whose load comes as close as `tolerance` to 1 may do
+// either
 Comparison compare(const Texture &texture, Material m, int collisions, double tolerance, double spin = 0.0)
 {
   std::mt19937 random(3);
@@ -180,10 +183,10 @@ Comparison compare(const Texture &texture, Material m, int collisions, double to
   for (int i = 0; i < collisions; i++) {
     m.friction = i % 5 == 4 ? 0.0 : i % 5 == 3 ? 5.0 : 0.1 + 0.1 * (i % 4);
     m.rolling = i % 4 == 2 ? 0.0 : i % 2 == 1 ? 3.0 : 0.15;
-    const DetachmentFunctions functions(texture, m, integrate());
+    const GrainTable table(texture, m, integrate());
     const History h = random_history(random, spin);
-    const std::map<int, Mode> left = by_collision(functions, h);
-    EXPECT_EQ(by_collision(functions, h, 17), left) << "collision " << i << " handed over";
+    const std::map<int, Mode> left = by_collision(table, h);
+    EXPECT_EQ(by_collision(table, h, 17), left) << "collision " << i << " handed over";
     for (size_t k = 0; k < texture.grains.size(); k++) {
       const auto it = left.find(k);
       if (it != left.end() && it->second == NORMAL) continue;
@@ -546,9 +549,9 @@ TEST(SurfaceMotion, GrainsOfACollisionThatRingLeaveMore)
   for (double zeta : {-1.0, 3.0, 0.06}) {
     Material m = CALCITE;
     m.damping = zeta;
-    const DetachmentFunctions functions(texture, m, integrate());
-    left[zeta] = by_collision(functions, h);
-    EXPECT_EQ(by_collision(functions, h, 17), left[zeta]);
+    const GrainTable table(texture, m, integrate());
+    left[zeta] = by_collision(table, h);
+    EXPECT_EQ(by_collision(table, h, 17), left[zeta]);
   }
   EXPECT_EQ(left[3.0], left[-1.0]);
   EXPECT_GT(left[0.06].size(), left[-1.0].size() + 100);
@@ -570,20 +573,25 @@ TEST(ImpulseRecord, KeepsSumsInBoundedMemory)
       impulse = impulse + dt * a;
       turn = turn + dt * spin;
       time += dt;
-      ASSERT_LE(record.spans().size(), size_t(ImpulseRecord::MOST));
+      ASSERT_LE(record.spans().size(), size_t(ImpulseRecord::MAX_SPANS));
     }
-    EXPECT_GE(record.spans().size(), size_t(std::min(steps, ImpulseRecord::MOST / 2)));
-    std::vector<double> buf(record.packed_size());
-    record.pack(buf.data());
+    EXPECT_GE(record.spans().size(), size_t(std::min(steps, ImpulseRecord::MAX_SPANS / 2)));
+    Packer counter;
+    record.pack(counter);
+    std::vector<double> buf(counter.size());
+    Packer packer(buf.data());
+    record.pack(packer);
     ImpulseRecord other;
-    other.unpack(buf.data(), buf.size());
+    Unpacker unpacker(buf.data());
+    other.unpack(unpacker);
+    EXPECT_EQ(unpacker.position(), buf.data() + buf.size());
     ASSERT_EQ(other.spans().size(), record.spans().size());
     EXPECT_EQ(std::memcmp(other.spans().data(), record.spans().data(),
                           record.spans().size() * sizeof(ImpulseRecord::Span)),
               0);
     for (const auto &span : record.spans()) {
       impulse = impulse - Vec{span.impulse[0], span.impulse[1], span.impulse[2]};
-      turn = turn - Vec{span.turn[0], span.turn[1], span.turn[2]};
+      turn = turn - Vec{span.angle[0], span.angle[1], span.angle[2]};
       time -= span.duration;
     }
     EXPECT_NEAR(size(impulse), 0.0, 1e-9);
@@ -601,17 +609,17 @@ TEST(ImpulseRecord, IsKeptForIntegrateOnly)
   for (auto tangential : {Criteria::OFF, Criteria::FRICTIONLESS, Criteria::ESTIMATE, Criteria::INTEGRATE}) {
     Criteria criteria;
     criteria.tangential = tangential;
-    const DetachmentFunctions functions(texture, CALCITE, criteria);
-    std::vector<uint64_t> attached = functions.all_attached();
+    const GrainTable table(texture, CALCITE, criteria);
+    std::vector<uint64_t> attached = table.all_attached();
     Workspace work;
     Collision collision;
     collision.begin(Quaternion(), NO_SPIN);
-    for (size_t k = 0; k < h.a.size(); k++) collision.step(functions, motion_of(h, k), h.dt, attached.data(), work);
+    for (size_t k = 0; k < h.a.size(); k++) collision.step(table, motion_of(h, k), h.dt, attached.data(), work);
     sizes[tangential] = collision.packed_size();
   }
   EXPECT_EQ(sizes[Criteria::OFF], sizes[Criteria::ESTIMATE]);
   EXPECT_EQ(sizes[Criteria::FRICTIONLESS], sizes[Criteria::ESTIMATE]);
-  EXPECT_GT(sizes[Criteria::INTEGRATE], sizes[Criteria::ESTIMATE] + 7 * ImpulseRecord::MOST / 2);
+  EXPECT_GT(sizes[Criteria::INTEGRATE], sizes[Criteria::ESTIMATE] + 7 * ImpulseRecord::MAX_SPANS / 2);
 }
 
 TEST(MotionBound, HoldsForWhatMovesMostAndSparesWhatDoesNot)
@@ -630,7 +638,7 @@ TEST(MotionBound, HoldsForWhatMovesMostAndSparesWhatDoesNot)
   EXPECT_GT(bound(1.001 * needed).of(equator, HOLD, RP + RD).centrifugal, HOLD);    // frictionless
   EXPECT_LT(bound(1.5 * needed).of(pole, HOLD, RP + RD).centrifugal, 0.2 * HOLD);
   EXPECT_LT(bound(0.5 * needed).of(equator, HOLD, RP + RD).centrifugal, 0.5 * HOLD);
-  EXPECT_GT(bound(0.5 * needed).of(equator, HOLD, RP + RD).turn, 0.5 * needed * 3.0e-6 / (RP + RD));
+  EXPECT_GT(bound(0.5 * needed).of(equator, HOLD, RP + RD).angle, 0.5 * needed * 3.0e-6 / (RP + RD));
   EXPECT_TRUE(bound(0.5 * needed).any_may_leave(HOLD, HOLD, SHELL));
   EXPECT_FALSE(bound(0.01 * needed).any_may_leave(HOLD, HOLD, SHELL));
 }
@@ -659,9 +667,9 @@ TEST(MotionBound, NeverSparesAGrainThatIsThrownOff)
       const Vec n = random_direction(random);
       const double radius = RD * (1.0 + 0.1 * (motion.grains() % 5)), hold = HOLD * RD * RD / (radius * radius);
       motion.add(&n.x, hold, radius, RP, &h.spin0.x);
-      const auto [turn, centrifugal] = bound.of(&n.x, hold, RP + radius);
+      const auto [angle, centrifugal] = bound.of(&n.x, hold, RP + radius);
       bool holds = centrifugal <= hold;    // after the end
-      for (const Vec &a : h.a) holds &= turn * size(a) - dot(a, n) + centrifugal <= hold;
+      for (const Vec &a : h.a) holds &= angle * size(a) - dot(a, n) + centrifugal <= hold;
       stays.push_back(holds);
       if (!bound.any_may_leave(hold, hold, RP + radius)) {
         EXPECT_TRUE(holds);
@@ -669,7 +677,7 @@ TEST(MotionBound, NeverSparesAGrainThatIsThrownOff)
     }
     for (const ImpulseRecord::Span &span : record.spans()) {
       const double t = span.duration, *j = span.impulse, a[3] = {j[0] / t, j[1] / t, j[2] / t};
-      const double spin[3] = {span.turn[0] / t, span.turn[1] / t, span.turn[2] / t};
+      const double spin[3] = {span.angle[0] / t, span.angle[1] / t, span.angle[2] / t};
       motion.advance(a, spin, t);
     }
     motion.release();
@@ -688,14 +696,15 @@ TEST(MotionBound, NeverSparesAGrainThatIsThrownOff)
 
 TEST(MotionBound, NeverSparesAGrainThatRingsOff)
 {
-  // an undamped contact under loads that swing at its frequency; spared where they change by 0.95 F_c, thrown off by far more
+  // an undamped contact under loads that swing at its frequency; spared where they change by 0.95 F_c, thrown off by
+  // far more
   const double gap = 2.267e-10, mass = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0, n[3] = {0.0, 0.0, 1.0};
   const double period =
       2.0 * M_PI /
       std::sqrt(1.2 * CALCITE.modulus *
                 equilibrium_contact_radius(CALCITE.gamma, effective_radius(RP, RD), CALCITE.modulus) / mass);
   int spared = 0, thrown = 0;
-  for (int swings = 1; swings <= ImpulseRecord::MOST / 2; swings++)
+  for (int swings = 1; swings <= ImpulseRecord::MAX_SPANS / 2; swings++)
     for (double strength = 0.0; strength < 0.5; strength += 0.01) {
       ImpulseRecord record;
       NormalMotion ringing(0.0);

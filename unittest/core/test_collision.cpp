@@ -1,6 +1,6 @@
 // The detachment functions against a reference that visits every grain at every step, and against closed forms.
 
-#include "detachment.h"
+#include "collision.h"
 
 #include "hamaker.h"
 #include "jkr.h"
@@ -165,10 +165,10 @@ Quaternion orientation(const History &h)
 }
 
 // the same by Collision; handed over to another one every `handover` steps
-Outcome by_collision(const Texture &texture, const DetachmentFunctions &functions, const History &h, int handover = 0)
+Outcome by_collision(const Texture &texture, const GrainTable &table, const History &h, int handover = 0)
 {
   Outcome out;
-  std::vector<uint64_t> attached = functions.all_attached();
+  std::vector<uint64_t> attached = table.all_attached();
   static Workspace work;    // shared, as what one collision leaves behind must not show in the next
   std::vector<Detachment> &detached = work.detached;
   Collision collision;
@@ -178,31 +178,33 @@ Outcome by_collision(const Texture &texture, const DetachmentFunctions &function
   for (size_t k = 0; !over; k++) {
     over = k == h.a.size() || collision.at_rest();
     if (over) {
-      collision.end(functions, &spin.x, attached.data(), work);
+      collision.end(table, &spin.x, attached.data(), work);
       out.steps = k;
     } else {
       const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
       const Motion motion = {{h.a[k].x, h.a[k].y, h.a[k].z}, {alpha.x, alpha.y, alpha.z}, {spin.x, spin.y, spin.z}};
-      collision.step(functions, motion, h.dt, attached.data(), work);
+      collision.step(table, motion, h.dt, attached.data(), work);
       spin = spin + h.dt * alpha;
     }
     for (const Detachment &d : detached) {
-      EXPECT_EQ(out.left.count(functions.grain(d.bit)), 0u) << "a grain left twice";
-      out.left[functions.grain(d.bit)] = {static_cast<int>(k), d.mode};
+      EXPECT_EQ(out.left.count(table.grain(d.bit)), 0u) << "a grain left twice";
+      out.left[table.grain(d.bit)] = {static_cast<int>(k), d.mode};
     }
     detached.clear();
     if (handover && k % handover == 0) {
       std::vector<double> buf(collision.packed_size());
-      collision.pack(buf.data());
+      Packer packer(buf.data());
+      collision.pack(packer);
       Collision other;
-      other.unpack(buf.data());
+      Unpacker unpacker(buf.data());
+      other.unpack(unpacker);
       collision.release(work);
       collision = std::move(other);
     }
   }
-  out.north = collision.lost_north(functions, attached.data());
-  out.sliding = collision.grains_that(SLIDING, functions, attached.data());
-  out.rolling = collision.grains_that(ROLLING, functions, attached.data());
+  out.north = collision.lost_north(table, attached.data());
+  out.sliding = collision.grains_that(SLIDING, table, attached.data());
+  out.rolling = collision.grains_that(ROLLING, table, attached.data());
   collision.release(work);
   int still = 0;
   for (uint64_t word : attached) still += __builtin_popcountll(word);
@@ -277,7 +279,7 @@ History straight_impact(double speed, double restitution_damping)
 
 }    // namespace
 
-TEST(Detachment, SameGrainsAsBruteForceInTenThousandRandomCollisions)
+TEST(Collision, SameGrainsAsBruteForceInTenThousandRandomCollisions)
 {
   std::mt19937 random(1);
   const Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);    // 211 grains: four patches, one not full
@@ -291,12 +293,12 @@ TEST(Detachment, SameGrainsAsBruteForceInTenThousandRandomCollisions)
     if (i % 7 == 5) criteria.tangential = Criteria::FRICTIONLESS;
     if (i % 7 == 6) criteria.tangential = Criteria::OFF;
     m.friction = i % 5 == 4 ? 0.0 : 0.3;
-    const DetachmentFunctions functions(texture, m, criteria);
+    const GrainTable table(texture, m, criteria);
     const History h = random_history(random, i % 3);
     const Outcome expected = by_brute_force(texture, m, criteria, h);
-    const Outcome found = by_collision(texture, functions, h);
+    const Outcome found = by_collision(texture, table, h);
     expect_same(found, expected);
-    expect_same(by_collision(texture, functions, h, 17), expected);
+    expect_same(by_collision(texture, table, h, 17), expected);
     if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
     left += expected.left.size();
     at_rest += expected.steps < static_cast<int>(h.a.size());
@@ -311,26 +313,26 @@ TEST(Detachment, SameGrainsAsBruteForceInTenThousandRandomCollisions)
   EXPECT_GT(at_rest, 100);
 }
 
-TEST(Detachment, SameGrainsAsBruteForceForGrainsOfAllSizes)
+TEST(Collision, SameGrainsAsBruteForceForGrainsOfAllSizes)
 {
   std::mt19937 random(2);
   Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
   for (Grain &g : texture.grains) g.radius *= 0.2 + 0.8 * std::uniform_real_distribution<double>()(random);
   Material m = CALCITE;
   m.gamma *= 16.0;
-  const DetachmentFunctions functions(texture, m, Criteria());
+  const GrainTable table(texture, m, Criteria());
   double mass = 0.0, expected_mass = 0.0;
-  for (int bit = 0; bit < functions.grains(); bit++) mass += functions.weight(bit) * functions.mean_mass();
+  for (int bit = 0; bit < table.grains(); bit++) mass += table.weight(bit) * table.mean_mass();
   for (const Grain &g : texture.grains) expected_mass += 4.0 / 3.0 * M_PI * std::pow(g.radius, 3) * m.density;
   EXPECT_NEAR(mass, expected_mass, 1.0e-12 * expected_mass);
   for (int i = 0; i < 500; i++) {
     const History h = random_history(random, i % 2);
-    expect_same(by_collision(texture, functions, h), by_brute_force(texture, m, Criteria(), h));
+    expect_same(by_collision(texture, table, h), by_brute_force(texture, m, Criteria(), h));
     if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
   }
 }
 
-TEST(Detachment, ReferenceImpactsSameAsBruteForce)
+TEST(Collision, ReferenceImpactsSameAsBruteForce)
 {
   const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
   for (double speed : {0.3, 3.0, 8.0})
@@ -338,12 +340,12 @@ TEST(Detachment, ReferenceImpactsSameAsBruteForce)
       Criteria criteria;
       criteria.ibrahim = ibrahim;
       const History h = straight_impact(speed, 0.2733);
-      expect_same(by_collision(texture, DetachmentFunctions(texture, CALCITE, criteria), h),
+      expect_same(by_collision(texture, GrainTable(texture, CALCITE, criteria), h),
                   by_brute_force(texture, CALCITE, criteria, h));
     }
 }
 
-TEST(Detachment, NormalModeOfAStraightImpactIsTheCapOfTheClosedForm)
+TEST(Collision, NormalModeOfAStraightImpactIsTheCapOfTheClosedForm)
 {
   // 1/2 (1 - c/a_max) of the sphere less the bare cap; a texture of 4500 scatters by about 0.5 %, 20 of them by 0.1 %
   const History h = straight_impact(2.0, 0.2733);
@@ -354,12 +356,12 @@ TEST(Detachment, NormalModeOfAStraightImpactIsTheCapOfTheClosedForm)
   double found = 0.0;
   for (int seed = 1; seed <= 20; seed++) {
     const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
-    found += by_collision(texture, DetachmentFunctions(texture, CALCITE, Criteria()), h).left.size() / 4500.0 / 20.0;
+    found += by_collision(texture, GrainTable(texture, CALCITE, Criteria()), h).left.size() / 4500.0 / 20.0;
   }
   EXPECT_NEAR(found, expected, 0.003);
 }
 
-TEST(Detachment, FrictionlessRingOfTheClosedForm)
+TEST(Collision, FrictionlessRingOfTheClosedForm)
 {
   // v_t0 = |Dv| sin(polar angle) above v_crit: the ring between asin(v_crit/|Dv|) and the equator
   Criteria criteria;
@@ -372,28 +374,28 @@ TEST(Detachment, FrictionlessRingOfTheClosedForm)
   double found = 0.0;
   for (int seed = 1; seed <= 20; seed++) {
     const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
-    found += by_collision(texture, DetachmentFunctions(texture, CALCITE, criteria), h).north / 4500.0 / 20.0;
+    found += by_collision(texture, GrainTable(texture, CALCITE, criteria), h).north / 4500.0 / 20.0;
   }
   EXPECT_NEAR(found, expected, 0.003);
 }
 
-TEST(Detachment, RearGrainsFlyOffWithWhatFrictionLeaves)
+TEST(Collision, RearGrainsFlyOffWithWhatFrictionLeaves)
 {
   const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  const DetachmentFunctions functions(texture, CALCITE, Criteria());
+  const GrainTable table(texture, CALCITE, Criteria());
   const History h = straight_impact(9.0, 0.2733);
-  std::vector<uint64_t> attached = functions.all_attached();
+  std::vector<uint64_t> attached = table.all_attached();
   Workspace work;
   std::vector<Detachment> &detached = work.detached;
   Collision collision;
   const double spin[3] = {0.0, 0.0, 0.0};
   collision.begin(Quaternion(), spin);
-  for (const Vec &a : h.a) collision.step(functions, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached.data(), work);
+  for (const Vec &a : h.a) collision.step(table, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached.data(), work);
   detached.clear();
-  ASSERT_TRUE(collision.end(functions, spin, attached.data(), work));
+  ASSERT_TRUE(collision.end(table, spin, attached.data(), work));
   const double needed = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);
   for (const Detachment &d : detached) {
-    const Grain &g = texture.grains[functions.grain(d.bit)];
+    const Grain &g = texture.grains[table.grain(d.bit)];
     const Vec v = {d.velocity[0], d.velocity[1], d.velocity[2]}, n = {g.n[0], g.n[1], g.n[2]};
     EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);                   // along the surface,
     EXPECT_LT(v.z, 0.0);                                    // towards the point of impact,
@@ -402,26 +404,26 @@ TEST(Detachment, RearGrainsFlyOffWithWhatFrictionLeaves)
   }
 }
 
-TEST(Detachment, NothingLeavesBelowThePullOffForce)
+TEST(Collision, NothingLeavesBelowThePullOffForce)
 {
   const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  const DetachmentFunctions functions(texture, CALCITE, Criteria());
+  const GrainTable table(texture, CALCITE, Criteria());
   History h;
   h.dt = 1.0e-9;
   h.a.assign(100, {0.0, 0.0, 0.9999 * HOLD});
   h.before = {0.0, 0.0, -0.01};
   h.after = {0.0, 0.0, 0.003};
-  EXPECT_TRUE(by_collision(texture, functions, h).left.empty());
+  EXPECT_TRUE(by_collision(texture, table, h).left.empty());
   h.a.assign(100, {0.0, 0.0, 1.5 * HOLD});
-  EXPECT_FALSE(by_collision(texture, functions, h).left.empty());
+  EXPECT_FALSE(by_collision(texture, table, h).left.empty());
 }
 
-TEST(Detachment, EqualGrainsWeighExactlyOne)
+TEST(Collision, EqualGrainsWeighExactlyOne)
 {
   const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  const DetachmentFunctions functions(texture, CALCITE, Criteria());
-  for (int bit = 0; bit < functions.grains(); bit++) ASSERT_EQ(functions.weight(bit), 1.0);
-  EXPECT_NEAR(functions.mean_mass(), 1.1310e-11, 0.5e-15);    // the physics page
-  EXPECT_NEAR(functions.least_hold(), 1.330e5, 0.5e2);
-  EXPECT_EQ(functions.words(), 71);
+  const GrainTable table(texture, CALCITE, Criteria());
+  for (int bit = 0; bit < table.grains(); bit++) ASSERT_EQ(table.weight(bit), 1.0);
+  EXPECT_NEAR(table.mean_mass(), 1.1310e-11, 0.5e-15);    // the physics page
+  EXPECT_NEAR(table.min_hold(), 1.330e5, 0.5e2);
+  EXPECT_EQ(table.words(), 71);
 }

@@ -2,9 +2,8 @@
    Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
 ------------------------------------------------------------------------- */
 
-#include "lift_off_window.h"
+#include "lift_off_schedule.h"
 
-#include "detachment.h"
 #include "patch_bits.h"
 
 #include <algorithm>
@@ -20,104 +19,107 @@ struct Change {
   double along, aside;
 };
 
-Change change(const Motion &from, const Motion &to, const double *axis, double reach)
+Change change(const Motion &from, const Motion &to, const double *axis, double shell)
 {
   const double *a = to.acceleration, *b = from.acceleration;
   const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]}, along = dot(d, axis);
   const double e[3] = {d[0] - along * axis[0], d[1] - along * axis[1], d[2] - along * axis[2]};
-  return {std::fabs(along), std::sqrt(dot(e, e)) + reach * spin_difference(to.spin, from.spin)};
+  return {std::fabs(along), std::sqrt(dot(e, e)) + shell * spin_difference(to.spin, from.spin)};
 }
 
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
 
-void LiftOffWindow::look(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached,
-                         std::vector<int> &leaving)
+void LiftOffSchedule::look(const GrainTable &table, const Motion &motion, const uint64_t *attached,
+                           std::vector<Loss> &losses)
 {
-  if (end < 0.0) {
-    open(df, motion, attached, leaving);
+  if (!open) {
+    begin(table, motion, attached, losses);
     return;
   }
-  const Change moved = change(last, motion, axis, df.reach);
+  const Change moved = change(last, motion, axis, table.max_shell());
   clock += moved.along + moved.aside / ratio;
-  if (clock > end) {
-    open(df, motion, attached, leaving);
+  if (clock > horizon) {
+    begin(table, motion, attached, losses);
     return;
   }
   last = motion;
   const int now = tick_of(clock);
   for (; tick <= now; tick++)
-    for (int k = std::exchange(first[tick], -1), next; k >= 0; k = next) {
+    for (int k = std::exchange(first[tick], NONE), next; k != NONE; k = next) {
       next = entries[k].next;
       const int bit = entries[k].bit;
-      const auto &site = df.sites[bit];
+      const GrainTable::Site &site = table.site(bit);
       const double missing = site.hold - motion.lift(site.n, site.shell);
       if (missing < 0.0)
-        leaving.push_back(bit);
-      else if (const double due = clock + wait(missing, dot(axis, site.n)); due <= end)
+        losses.push_back({bit, NORMAL});
+      else if (const double due = clock + wait(missing, dot(axis, site.n)); due <= horizon)
         put(k, std::max(tick_of(due), now));
     }
   tick = now;
 }
 
 /* ----------------------------------------------------------------------
-   about 500 grains of 4500 to come while g grows, whatever |g|, as the number that holds goes with 1/|g|
+   the calendar takes about 500 grains of 4500 to come while g grows, whatever |g|, as the number that holds goes with
+   1/|g|
 ------------------------------------------------------------------------- */
 
-void LiftOffWindow::open(const DetachmentFunctions &df, const Motion &motion, const uint64_t *attached,
-                         std::vector<int> &leaving)
+void LiftOffSchedule::begin(const GrainTable &table, const Motion &motion, const uint64_t *attached,
+                            std::vector<Loss> &losses)
 {
-  const double *a = motion.acceleration, size = std::sqrt(dot(a, a)), spun = df.reach * dot(motion.spin, motion.spin);
+  const double *a = motion.acceleration, size = std::sqrt(dot(a, a)),
+               spun = table.max_shell() * dot(motion.spin, motion.spin);
   for (int d = 0; d < 3; d++) axis[d] = size > 0.0 ? -a[d] / size : d == 2;
-  const Change step = change(last, motion, axis, df.reach);
+  const Change step = change(last, motion, axis, table.max_shell());
   last = motion;
   ratio = step.along > 0.0 ? std::clamp(step.aside / step.along, 1.0e-4, 1.0) : 1.0;
-  const double length = std::min({size, 0.3 * size * size / df.least + 1.0e-3 * df.least, 0.2 * size / ratio});
-  // large steps, as in a bed of soft carriers: it would close before it pays
+  const double length =
+      std::min({size, 0.3 * size * size / table.min_hold() + 1.0e-3 * table.min_hold(), 0.2 * size / ratio});
+  // large steps, as in a bed of soft carriers: it would end before it pays
   constexpr double WORTH_IT = 2.0;
   const bool pays = length > WORTH_IT * (step.along + step.aside / ratio);
   clock = 0.0;
-  end = pays ? length : -1.0;
+  open = pays;
+  horizon = pays ? length : 0.0;
   tick = 0;
   entries.clear();
-  if (pays) first.assign(TICKS, -1);
+  if (pays) first.assign(TICKS, NONE);
 
   constexpr double ROUND_OFF = 1.0e-11;
   margin = ROUND_OFF * (size + spun);
-  const double horizon = pays ? length : 0.0;
   const auto is_late = [&](double missing, double u) {
     return missing - margin > horizon * std::max(std::fabs(u), ratio);
   };
-  for (int p = 0; p < df.words(); p++) {
-    const auto &patch = df.patches[p];
+  for (int p = 0; p < table.words(); p++) {
+    const GrainTable::Patch &patch = table.patch(p);
     if (!attached[p]) continue;
     // the first grain to lift off could be at either end of the patch along the axis
     const double u = dot(axis, patch.centre), fore = u + patch.radius, aft = u - patch.radius;
-    if (is_late(patch.least_hold - spun - size * fore, fore) && is_late(patch.least_hold - spun - size * aft, aft))
+    if (is_late(patch.min_hold - spun - size * fore, fore) && is_late(patch.min_hold - spun - size * aft, aft))
       continue;
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
-      const auto &site = df.sites[bit];
+      const GrainTable::Site &site = table.site(bit);
       const double along = dot(axis, site.n);
       if (is_late(site.hold - spun - size * along, along)) return;
       const double missing = site.hold - motion.lift(site.n, site.shell);
       if (missing < 0.0) {
-        leaving.push_back(bit);
-      } else if (const double due = wait(missing, along); pays && due <= end) {
-        entries.push_back({bit, -1});
+        losses.push_back({bit, NORMAL});
+      } else if (const double due = wait(missing, along); pays && due <= horizon) {
+        entries.push_back({bit, NONE});
         put(static_cast<int>(entries.size()) - 1, tick_of(due));
       }
     });
   }
 }
 
-double LiftOffWindow::wait(double missing, double u) const
+double LiftOffSchedule::wait(double missing, double u) const
 {
   return (missing - margin) / std::max(std::fabs(u), ratio);
 }
 
-int LiftOffWindow::tick_of(double time) const
+int LiftOffSchedule::tick_of(double time) const
 {
-  return static_cast<int>(std::clamp(time / end * TICKS, 0.0, TICKS - 1.0));
+  return static_cast<int>(std::clamp(time / horizon * TICKS, 0.0, TICKS - 1.0));
 }

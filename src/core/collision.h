@@ -1,0 +1,159 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_COLLISION_H
+#define DUST_CORE_COLLISION_H
+
+#include "acceleration_history.h"
+#include "activity.h"
+#include "grain_table.h"
+#include "impulse_record.h"
+#include "lift_off_schedule.h"
+#include "pack.h"
+#include "quaternion.h"
+#include "tangential_law.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+/* Which grains of a texture leave a carrier in a collision, from the carrier's motion alone. */
+
+namespace Dust {
+
+/*! One grain that has just left */
+struct Detachment {
+  int bit;
+  Mode mode;
+  double direction[3];    //!< n, in space
+  double velocity[3];     //!< relative to the carrier's centre, in space
+};
+
+/*! What is kept of a collision from when inertia could make a grain slide */
+struct Strong {
+  struct Moment {
+    double time;
+    double impulse[3], spin[3];    // as of Collision
+  };
+  struct State {             // in space
+    Quaternion now;          // the carrier
+    Moment lively;           // at the last lively step
+    double count[NMODES];    // of the grains that have left, those that had met SLIDING and ROLLING
+  } state;
+  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
+  AccelerationHistory history;
+  LiftOffSchedule schedule;
+};
+
+/*! What the collisions of a rank share */
+struct Workspace {
+  std::vector<Detachment> detached;              //!< grains that have left: to be taken and cleared by the caller
+  bool locate = true;                            //!< whether the caller wants their directions and velocities
+  std::vector<std::unique_ptr<Strong>> spare;    //!< strong parts that no collision needs now
+  // of the present call
+  std::vector<Loss> losses;
+  std::vector<Release> released;
+};
+
+/*! Collision of one carrier
+ *
+ * It begins with the first contact force after free flight, or where a carrier at rest is moved so hard that a grain
+ * could slide. It ends with the first step without contact force: an isolated impact is followed from first contact to
+ * rebound, as in the paper. Or it comes to rest (activity.h). What came after its last lively step then does not count.
+ * In a bed of carriers this ends the collision where neither a first contact nor a rebound could be told. Damped Hertz
+ * contacts with restitution from 0.3 on (0.1) rebound before, if their peak is 1.01 (1.6) times what can make a grain
+ * slide.
+ *
+ * It is weak until inertia first can make a grain slide. Most contacts of a bed stay weak: of that time only the sums
+ * and the largest acceleration are kept.
+ *
+ * Vectors come in space. The frame of first contact is the carrier's axes at the first step; it does not turn with them
+ * later.
+ *
+ * In most steps no grain can change, and little is done in the others:
+ * - A grain that holds at q holds at lambda q + e too if what e and the spin add is no more than (1 - lambda) c:
+ *   unloading needs no look.
+ * - LiftOffSchedule knows which grains can lift off next.
+ * - Whether a grain has met the sliding or rolling criterion is asked once, when it leaves or at the end: as long as it
+ *   holds, g_t + k g_n is a convex function of g, so the motions that the history keeps decide. */
+class alignas(64) Collision {
+ public:
+  /*! Starts before the first step that has a contact force
+   *  \param orientation  of the carrier at that step
+   *  \param spin         before that contact */
+  void begin(const Quaternion &orientation, const double *spin);
+
+  /*! One time step: Eq. 2 and lift-off normal
+   *  \param motion    its spin is that of the middle of the step that ends now, as a leapfrog has it
+   *  \param attached  bits of the grains; those that leave are cleared
+   *  \param work      the grains that leave are appended to its list
+   *  \return          true if any left */
+  bool step(const GrainTable &table, const Motion &motion, double dt, uint64_t *attached, Workspace &work);
+
+  /*! Whether it has come to rest though the contact lasts */
+  bool at_rest() const { return course.activity.at_rest(weak()); }
+
+  /*! Lift-off tangential, at the first step without contact force or at rest, by the law of the table's criteria
+   *  \param spin  after the contact */
+  bool end(const GrainTable &table, const double *spin, uint64_t *attached, Workspace &work);
+
+  /*! Grains lost since begin() on the north, n.(velocity - velocity before contact) > 0; before the end with the
+   *  velocity so far */
+  int lost_north(const GrainTable &table, const uint64_t *attached) const;
+
+  bool weak() const { return !strong; }
+  double peak_acceleration() const;    //!< largest |contact acceleration| so far
+  /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin(); where no inertia could make any
+   *  slide, those that have met it at the largest acceleration */
+  int grains_that(Mode mode, const GrainTable &table, const uint64_t *attached) const;
+
+  /*! Gives back what it has taken from the workspace: when it is over, or its carrier gone */
+  void release(Workspace &work);
+
+  // transfer to another rank and restart. The schedule is begun anew, which changes no result
+  void pack(Packer &packer) const;
+  int packed_size() const;
+  void unpack(Unpacker &unpacker);
+
+ private:
+  // what a step of a weak collision needs comes first, as a bed has more of them than a cache
+  std::unique_ptr<Strong> strong;    // from when inertia could make a grain slide
+  struct Course {                    // in space
+    double time;
+    double impulse[3];    // contact force/carrier mass, integrated since begin()
+    Activity activity;
+    // of the weak time
+    double peak2;       // square of the largest acceleration
+    double angle[3];    // about which the carrier turned
+    Motion peak;        // that of the largest acceleration, and the angle until then
+    double peak_angle[3];
+    Quaternion frame;    // the carrier at first contact
+    double spin0[3];     // before contact
+  } course;
+  std::unique_ptr<ImpulseRecord> impulses;    // if the law needs them, from the first step
+
+  // size of a motion, and whether it may move a grain
+  struct Strength {
+    double size2, size, rotation;    // of the acceleration; at most what rotation adds on any grain
+    bool may_move;
+  };
+  static Strength strength_of(const GrainTable &table, const Motion &motion);
+
+  void become_strong(const GrainTable &table, Workspace &work);
+  void add(const GrainTable &table, const Motion &motion, double dt);
+  void step_weak(const GrainTable &table, const Motion &motion, const Strength &strength, double dt);
+  void step_strong(const GrainTable &table, const Motion &motion, const Strength &strength, double dt,
+                   uint64_t *attached, Workspace &work);
+  void find_losses(const GrainTable &table, const Motion &motion, const uint64_t *attached, Workspace &work);
+  void keep_start(const GrainTable &table, const uint64_t *attached);
+  PastCollision past_at(const double *spin) const;
+  void lose(const GrainTable &table, const Loss &loss, const Motion &motion, uint64_t *attached, Workspace &work);
+  void let_go(const GrainTable &table, const Release &release, uint64_t *attached, Workspace &work);
+  Motion weak_peak() const;    // the largest of the weak time, along the carrier's axes
+  bool has_met(Mode mode, const GrainTable &table, int bit) const;
+};
+
+}    // namespace Dust
+
+#endif

@@ -1,0 +1,23 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_CRITERIA_H
+#define DUST_CORE_CRITERIA_H
+
+namespace Dust {
+
+/*! How a grain left its carrier */
+enum Mode { NORMAL, TANGENTIAL, SLIDING, ROLLING, NMODES };
+
+/*! What makes grains detach */
+struct Criteria {
+  bool count = true;       //!< grains that meet the sliding and rolling criteria
+  bool ibrahim = false;    //!< sliding and rolling detach too
+  //! the law of tangential lift-off, a file each (tangential_law.h)
+  enum Tangential { OFF, FRICTIONLESS, ESTIMATE, INTEGRATE } tangential = ESTIMATE;
+};
+
+}    // namespace Dust
+
+#endif

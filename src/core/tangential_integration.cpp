@@ -1,0 +1,171 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "tangential_integration.h"
+
+#include "geometry.h"
+#include "jkr.h"
+#include "motion_bound.h"
+#include "normal_motion.h"
+#include "patch_bits.h"
+#include "surface_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace Dust;
+
+namespace {
+
+bool rings(const GrainTable &table) { return table.material().damping >= 0.0; }
+
+MotionBound bound_of(const GrainTable &table, const PastCollision &past)
+{
+  return MotionBound(*past.impulses, past.spin_before, past.peak, table.material().rolling, table.carrier_radius());
+}
+
+bool may_release(const GrainTable &table, const PastCollision &past)
+{
+  if (!past.impulses) return false;    // no step since a restart from a run with another law
+  const MotionBound bound = bound_of(table, past);
+  const double min = table.min_hold(), max = table.max_hold(), shell = table.max_shell();
+  return rings(table) ? bound.any_may_ring_off(min, max, shell) : bound.any_may_leave(min, max, shell);
+}
+
+/* ----------------------------------------------------------------------
+   the course of the collision in steps small enough to follow grains. What is at the end of a span lies between the
+   means of this span and the next; contact forces end at 0
+------------------------------------------------------------------------- */
+
+struct Substep {
+  double dt, acceleration[3];    // mean
+  double acceleration_after[3], spin_after[3];
+};
+
+std::vector<Substep> substeps(const PastCollision &past)
+{
+  const std::vector<ImpulseRecord::Span> &spans = past.impulses->spans();
+  // more than one a span in a collision of few time steps
+  const int parts = static_cast<int>(ImpulseRecord::MAX_SPANS / 2 / spans.size()) + 1;
+  std::vector<Substep> found;
+  found.reserve(parts * spans.size());
+  double force0[3] = {0.0, 0.0, 0.0}, spin0[3];
+  std::copy_n(past.spin_before, 3, spin0);
+  for (size_t i = 0; i < spans.size(); i++) {
+    const bool last = i + 1 == spans.size();
+    const ImpulseRecord::Span &span = spans[i], &next = spans[last ? i : i + 1];
+    const double mine = next.duration / (span.duration + next.duration);    // the last span is shorter than others
+    for (int k = 1; k <= parts; k++) {
+      const double done = static_cast<double>(k) / parts;
+      Substep step;
+      step.dt = span.duration / parts;
+      for (int d = 0; d < 3; d++) {
+        step.acceleration[d] = span.impulse[d] / span.duration;
+        const double force = last ? 0.0 : mine * step.acceleration[d] + (1.0 - mine) * next.impulse[d] / next.duration;
+        const double spin = mine * span.angle[d] / span.duration + (1.0 - mine) * next.angle[d] / next.duration;
+        step.acceleration_after[d] = force0[d] + done * (force - force0[d]);
+        step.spin_after[d] = spin0[d] + done * (spin - spin0[d]);
+      }
+      found.push_back(step);
+    }
+    std::copy_n(found.back().acceleration_after, 3, force0);
+    std::copy_n(found.back().spin_after, 3, spin0);
+  }
+  return found;
+}
+
+/* ----------------------------------------------------------------------
+   follows so many grains at a time
+------------------------------------------------------------------------- */
+
+class Follower {
+ public:
+  Follower(const GrainTable &grains, const PastCollision &collision, std::vector<Release> &leaving) :
+      table(grains), past(collision), released(leaving), steps(substeps(collision)), rings(::rings(grains)),
+      motion(grains.material().friction, grains.material().rolling), ringing(grains.material().damping)
+  {
+  }
+
+  void add(int bit)
+  {
+    const GrainTable::Site &site = table.site(bit);
+    const double rp = table.carrier_radius(), radius = site.shell - rp;
+    const int lane = motion.grains();
+    bits[lane] = bit;
+    motion.add(site.n, site.hold, radius, rp, past.spin_before);
+    if (rings) {
+      constexpr double NONE[3] = {0.0, 0.0, 0.0};
+      const double r12 = effective_radius(rp, radius);
+      ringing.add(site.hold, breaking_gap(site.lever * radius, r12), motion.outward_force(lane, NONE) / site.hold);
+    }
+    if (motion.full()) run();
+  }
+
+  // those that are still to be followed
+  void run()
+  {
+    double load[SurfaceMotion::LANES];
+    for (const Substep &step : steps) {
+      motion.advance(step.acceleration, step.spin_after, step.dt);
+      if (!rings) continue;
+      for (int k = 0; k < motion.grains(); k++)
+        load[k] = motion.outward_force(k, step.acceleration_after) / table.site(bits[k]).hold;
+      ringing.advance(load, step.dt);
+    }
+    motion.release();
+    ringing.ring_out();
+    for (int k = 0; k < motion.grains(); k++) {
+      if (motion.attached(k) && !(rings && !ringing.attached(k))) continue;
+      Release release = {bits[k], {}, {}};
+      for (int d = 0; d < 3; d++) {
+        release.direction[d] = motion.direction(k, d);
+        release.velocity[d] = motion.velocity(k, d);
+      }
+      released.push_back(release);
+    }
+    motion.clear();
+    ringing.clear();
+  }
+
+ private:
+  const GrainTable &table;
+  const PastCollision &past;
+  std::vector<Release> &released;
+  const std::vector<Substep> steps;
+  const bool rings;
+  SurfaceMotion motion;
+  NormalMotion ringing;
+  int bits[SurfaceMotion::LANES];
+  static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
+};
+
+/* ---------------------------------------------------------------------- */
+
+void releases(const GrainTable &table, const PastCollision &past, const uint64_t *attached, bool /*located*/,
+              std::vector<Release> &released)
+{
+  const MotionBound bound = bound_of(table, past);
+  Follower follower(table, past, released);
+  // a grain that does not ring is followed only if it could come near lift-off
+  const auto may_leave = [&](const GrainTable::Site &site) {
+    const auto [angle, centrifugal] = bound.of(site.n, site.hold, site.shell);
+    const double needed = site.hold - centrifugal;
+    const auto excess = [&, angle = angle](const Motion &m) {
+      const double *a = m.acceleration;
+      return angle * std::sqrt(dot(a, a)) - dot(a, site.n) - needed;
+    };
+    // of the weak time the history has the largest motion only
+    return !(needed >= past.weak_peak * (1.0 + angle)) || past.history->any(excess, 1.0 + angle, 0.0);
+  };
+  for (int word = 0; word < table.words(); word++)
+    each_bit(attached[word], [&](int k) {
+      const int bit = word * PATCH + k;
+      if (rings(table) || may_leave(table.site(bit))) follower.add(bit);
+    });
+  follower.run();
+}
+
+}    // namespace
+
+const TangentialLaw Dust::TANGENTIAL_INTEGRATION = {true, may_release, releases};

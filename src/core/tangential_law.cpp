@@ -1,0 +1,21 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "tangential_law.h"
+
+#include "tangential_estimate.h"
+#include "tangential_integration.h"
+
+using namespace Dust;
+
+const TangentialLaw *Dust::tangential_law(Criteria::Tangential name)
+{
+  switch (name) {
+    case Criteria::FRICTIONLESS: return &TANGENTIAL_FRICTIONLESS;
+    case Criteria::ESTIMATE: return &TANGENTIAL_ESTIMATE;
+    case Criteria::INTEGRATE: return &TANGENTIAL_INTEGRATION;
+    case Criteria::OFF: break;
+  }
+  return nullptr;
+}
