@@ -12,6 +12,88 @@
 
 using namespace Dust;
 
+namespace {
+
+struct Vector {
+  double x, y, z;
+};
+inline Vector operator+(const Vector &a, const Vector &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(const Vector &a, const Vector &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(double c, const Vector &a) { return {c * a.x, c * a.y, c * a.z}; }
+inline double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector cross(const Vector &a, const Vector &b)
+{
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// of the carrier: its acceleration, its spin at the start and how much that changes
+struct CarrierStep {
+  double dt, inv_dt;
+  Vector a, omega, change;
+};
+
+// one grain: its time step and half of it, which are 0 if it has left, as `here` is; then as in SurfaceMotion
+struct Lane {
+  double h, half, here;
+  double friction, hold, inv_hold, stiffness;
+  double shell, inv_shell, radius, inv_radius;
+};
+
+// its unknowns, named as in surface_motion.h
+struct State {
+  Vector n, v, p, psi;
+};
+
+// half of dn and dpsi, and all vectors into the tangential plane there
+inline void to_middle(State &s, const Lane &g, const CarrierStep &step, double rolling2)
+{
+  const double over = g.half * g.inv_shell, roll = g.half * g.inv_radius;
+  Vector n = s.n + over * s.v + g.half * cross(step.omega, s.n);
+  n = (1.5 - 0.5 * dot(n, n)) * n;    // times 1/|n|, nearly 1
+  const Vector psi = s.psi + roll * s.p;
+  s.n = n;
+  s.v = s.v - dot(s.v, n) * n;
+  s.p = s.p - dot(s.p, n) * n;
+  s.psi = psi - dot(psi, n) * n;
+  const double psi2 = dot(s.psi, s.psi);
+  s.psi = (psi2 > rolling2 ? std::sqrt(rolling2 / psi2) : 1.0) * s.psi;    // the pivot gives way
+}
+
+// the friction that ends the slip: u + dt (t + 7/2 f + 5/2 s psi) - R_p change of omega x n = 0; or its limit
+inline Vector friction_on(const State &s, const Lane &g, const CarrierStep &step, const Vector &turned, const Vector &t,
+                          double stiffness, double gn)
+{
+  const double limit = g.friction * std::fabs(2.0 * g.hold - gn), surface = g.shell - g.radius;
+  const Vector f = -2.0 / 7.0 * (step.inv_dt * (s.v - s.p - surface * turned) + t + 2.5 * stiffness * s.psi);
+  const double f2 = dot(f, f);
+  return (f2 > limit * limit ? limit / std::sqrt(f2) : 1.0) * f;
+}
+
+// the forces in the middle, all of dv and dp, and the other half of dn and dpsi; 0 if it leaves, with the velocity it
+// has in the middle
+inline double to_end(State &s, const Lane &g, const CarrierStep &step)
+{
+  // what the carrier's turning brings: omega x n before and after, and with it w
+  const Vector n = s.n, before = g.here * cross(step.omega, n), after = before + g.here * cross(step.change, n);
+  const Vector w = s.v + g.shell * before;
+  const double on = dot(step.omega + 0.5 * step.change, n), an = dot(step.a, n);
+  const Vector t = an * n - step.a - on * cross(n, w);
+  const double gn = dot(w, w) * g.inv_shell - an;    // F_n/m, but for the kick below
+  const double stiffness = g.stiffness * (1.0 + std::sqrt(std::max(0.0, 1.0 - gn * g.inv_hold)));
+  const Vector f = friction_on(s, g, step, after - before, t, stiffness, gn);
+
+  const Vector middle = w + g.half * (t + f);
+  const double lift = dot(middle, middle) * g.inv_shell - an, stays = lift > g.hold ? 0.0 : g.here;
+  const double rest = stays * 0.5 * step.dt;
+  s.v = middle + rest * (t + f) - (stays * g.shell) * after;
+  s.p = s.p + (g.radius * before - 2.5 * g.h * (f + stiffness * s.psi) - (stays * g.radius) * after);
+  s.n = n + (rest * g.inv_shell) * s.v + rest * after;
+  s.psi = s.psi + (rest * g.inv_radius) * s.p;
+  return stays;
+}
+
+}    // namespace
+
 SurfaceMotion::SurfaceMotion(double mu_f, double theta_crit) : friction(mu_f), rolling2(theta_crit * theta_crit)
 {
   clear();
@@ -57,74 +139,24 @@ void SurfaceMotion::add(const double *direction, double hold_of, double grain_ra
 
 /* ---------------------------------------------------------------------- */
 
+// the loop over the grains runs in vectors: all that it calls is inlined
 void SurfaceMotion::advance(const double *a, const double *spin, double dt)
 {
-  const double inv_dt = 1.0 / dt, ax = a[0], ay = a[1], az = a[2];
-  const double ox = omega[0], oy = omega[1], oz = omega[2];
-  const double dx = spin[0] - ox, dy = spin[1] - oy, dz = spin[2] - oz;
+  const Vector o = {omega[0], omega[1], omega[2]};
+  const CarrierStep step = {dt, 1.0 / dt, {a[0], a[1], a[2]}, o, Vector{spin[0], spin[1], spin[2]} - o};
   for (int i = 0; i < LANES; i++) {
-    const double at = here[i], h = dt * at, half = 0.5 * h, c = hold[i];
-    double vx = v[0][i], vy = v[1][i], vz = v[2][i];
-    double px = p[0][i], py = p[1][i], pz = p[2][i];
-
-    // to the middle of the step, and all vectors into the tangential plane there
-    const double over = half * inv_shell[i], roll = half * inv_radius[i];
-    const double n0x = n[0][i], n0y = n[1][i], n0z = n[2][i];
-    double nx = n0x + over * vx + half * (oy * n0z - oz * n0y);
-    double ny = n0y + over * vy + half * (oz * n0x - ox * n0z);
-    double nz = n0z + over * vz + half * (ox * n0y - oy * n0x);
-    const double inv_size = 1.5 - 0.5 * (nx * nx + ny * ny + nz * nz);    // 1/|n|, nearly 1
-    nx *= inv_size, ny *= inv_size, nz *= inv_size;
-    double qx = psi[0][i] + roll * px, qy = psi[1][i] + roll * py, qz = psi[2][i] + roll * pz;
-    const double vn = vx * nx + vy * ny + vz * nz, pn = px * nx + py * ny + pz * nz, qn = qx * nx + qy * ny + qz * nz;
-    vx -= vn * nx, vy -= vn * ny, vz -= vn * nz;
-    px -= pn * nx, py -= pn * ny, pz -= pn * nz;
-    qx -= qn * nx, qy -= qn * ny, qz -= qn * nz;
-    const double q2 = qx * qx + qy * qy + qz * qz;
-    const double held = q2 > rolling2 ? std::sqrt(rolling2 / q2) : 1.0;    // the pivot gives way
-    qx *= held, qy *= held, qz *= held;
-
-    // what the carrier's turning brings: omega x n before and after, and with it w
-    const double bx = at * (oy * nz - oz * ny), by = at * (oz * nx - ox * nz), bz = at * (ox * ny - oy * nx);
-    const double cx = bx + at * (dy * nz - dz * ny), cy = by + at * (dz * nx - dx * nz),
-                 cz = bz + at * (dx * ny - dy * nx);
-    const double wx = vx + shell[i] * bx, wy = vy + shell[i] * by, wz = vz + shell[i] * bz;
-    const double on = (ox + 0.5 * dx) * nx + (oy + 0.5 * dy) * ny + (oz + 0.5 * dz) * nz;
-
-    const double an = ax * nx + ay * ny + az * nz;
-    const double tx = an * nx - ax - on * (ny * wz - nz * wy);
-    const double ty = an * ny - ay - on * (nz * wx - nx * wz);
-    const double tz = an * nz - az - on * (nx * wy - ny * wx);
-    const double gn = (wx * wx + wy * wy + wz * wz) * inv_shell[i] - an;    // F_n/m, but for the kick below
-    const double s = stiffness[i] * (1.0 + std::sqrt(std::max(0.0, 1.0 - gn * inv_hold[i])));
-    const double limit = friction * std::fabs(2.0 * c - gn);
-
-    // the friction that ends the slip: u + dt (t + 7/2 f + 5/2 s psi) - R_p change of omega x n = 0
-    const double surface = shell[i] - radius[i];
-    double fx = -2.0 / 7.0 * (inv_dt * (vx - px - surface * (cx - bx)) + tx + 2.5 * s * qx);
-    double fy = -2.0 / 7.0 * (inv_dt * (vy - py - surface * (cy - by)) + ty + 2.5 * s * qy);
-    double fz = -2.0 / 7.0 * (inv_dt * (vz - pz - surface * (cz - bz)) + tz + 2.5 * s * qz);
-    const double f2 = fx * fx + fy * fy + fz * fz;
-    const double part = f2 > limit * limit ? limit / std::sqrt(f2) : 1.0;
-    fx *= part, fy *= part, fz *= part;
-
-    // in the middle: does it leave, with the velocity it has there?
-    const double mx = wx + half * (tx + fx), my = wy + half * (ty + fy), mz = wz + half * (tz + fz);
-    const double lift = (mx * mx + my * my + mz * mz) * inv_shell[i] - an;
-    const double stays = lift > c ? 0.0 : at;
-    const double rest = stays * 0.5 * dt, carrier = stays * shell[i], spun = stays * radius[i], r = radius[i];
-    vx = mx + rest * (tx + fx) - carrier * cx, vy = my + rest * (ty + fy) - carrier * cy,
-    vz = mz + rest * (tz + fz) - carrier * cz;
-    px += r * bx - 2.5 * h * (fx + s * qx) - spun * cx;
-    py += r * by - 2.5 * h * (fy + s * qy) - spun * cy;
-    pz += r * bz - 2.5 * h * (fz + s * qz) - spun * cz;
-
-    here[i] = stays;
-    const double move = rest * inv_shell[i], roll_on = rest * inv_radius[i];
-    n[0][i] = nx + move * vx + rest * cx, n[1][i] = ny + move * vy + rest * cy, n[2][i] = nz + move * vz + rest * cz;
-    v[0][i] = vx, v[1][i] = vy, v[2][i] = vz;
-    p[0][i] = px, p[1][i] = py, p[2][i] = pz;
-    psi[0][i] = qx + roll_on * px, psi[1][i] = qy + roll_on * py, psi[2][i] = qz + roll_on * pz;
+    const Lane grain = {dt * here[i], 0.5 * (dt * here[i]), here[i],   friction,     hold[i], inv_hold[i], stiffness[i],
+                        shell[i],     inv_shell[i],         radius[i], inv_radius[i]};
+    State state = {{n[0][i], n[1][i], n[2][i]},
+                   {v[0][i], v[1][i], v[2][i]},
+                   {p[0][i], p[1][i], p[2][i]},
+                   {psi[0][i], psi[1][i], psi[2][i]}};
+    to_middle(state, grain, step, rolling2);
+    here[i] = to_end(state, grain, step);
+    n[0][i] = state.n.x, n[1][i] = state.n.y, n[2][i] = state.n.z;
+    v[0][i] = state.v.x, v[1][i] = state.v.y, v[2][i] = state.v.z;
+    p[0][i] = state.p.x, p[1][i] = state.p.y, p[2][i] = state.p.z;
+    psi[0][i] = state.psi.x, psi[1][i] = state.psi.y, psi[2][i] = state.psi.z;
   }
   for (int d = 0; d < 3; d++) omega[d] = spin[d];
 }
