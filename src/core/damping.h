@@ -23,7 +23,7 @@ namespace Dust {
  * \return   damping ratio, to round-off */
 double damping_ratio(double e);
 
-/*! Coefficient c of the damping force -c sqrt(m_eff F_el/delta) v_n of a Hertzian contact (alpha of physics.md) */
+/*! Coefficient c of the damping force -c sqrt(m_eff F_el/delta) v_n of a Hertzian contact */
 double hertz_damping(double e);
 
 /*! The same for a Hookean contact */

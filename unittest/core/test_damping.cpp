@@ -32,9 +32,9 @@ double realised(double c, double p)
 
 }    // namespace
 
-TEST(Damping, CoefficientsOfThePhysicsPage)
+TEST(Damping, CoefficientsOfTheDocumentation)
 {
-  // the page prints them with three or four digits
+  // doc/gran_damping_coeff_restitution_limited.rst prints them with three or four digits
   EXPECT_NEAR(Dust::hertz_damping(0.9), 0.0766, 0.00005);
   EXPECT_NEAR(Dust::hertz_damping(0.7), 0.2733, 0.00005);
   EXPECT_NEAR(Dust::hertz_damping(0.5), 0.571, 0.0005);

@@ -50,7 +50,7 @@ TEST(CoeffRestitutionLimited, RealisedOnAWall)
 
 TEST(CoeffRestitutionLimited, StockModelsMissIt)
 {
-  // why this model exists: these are the traps of the physics page, 0.778 and 0.718 for 0.7
+  // why this model exists: LAMMPS' own give 0.778 and 0.718 for 0.7
   const std::string hertz = "hertz/material 210e9 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping ";
   EXPECT_NEAR(wall_impact(hertz + "tsuji", 5.0, 2e-9), 0.778, 0.01);
   EXPECT_NEAR(wall_impact(hertz + "coeff_restitution limit_damping", 5.0, 2e-9), 0.718, 0.01);

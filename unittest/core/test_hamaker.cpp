@@ -1,4 +1,5 @@
-// Constants of the adhesive contact against the reference case of the physics page, printed there with 4 or 5 digits.
+// The surface energy, and with it the constants of the adhesive contact: those of the reference case worked out by
+// hand.
 
 #include "hamaker.h"
 #include "jkr.h"
@@ -7,7 +8,7 @@
 
 #include <cmath>
 
-TEST(Adhesion, ReferenceGrainOnItsCarrier)
+TEST(Hamaker, ReferenceGrainOnItsCarrier)
 {
   const double hamaker = std::sqrt(10.1e-20 * 21.2e-20);
   const double gamma = Dust::surface_energy(hamaker, 0.4e-9);
@@ -20,13 +21,13 @@ TEST(Adhesion, ReferenceGrainOnItsCarrier)
   EXPECT_NEAR(Dust::equilibrium_contact_radius(gamma, r12, modulus), 90.18e-9, 0.5e-11);
 }
 
-TEST(Adhesion, PullOffForceIsTheVanDerWaalsForceAtTheLeastDistance)
+TEST(Hamaker, PullOffForceIsTheVanDerWaalsForceAtTheLeastDistance)
 {
   const double hamaker = 3.0e-20, z0 = 0.3e-9, r12 = 4.0e-6;
   EXPECT_DOUBLE_EQ(Dust::pull_off_force(Dust::surface_energy(hamaker, z0), r12), hamaker * r12 / (6.0 * z0 * z0));
 }
 
-TEST(Adhesion, EffectiveRadiusAgainstAFlatWall)
+TEST(Hamaker, EffectiveRadiusAgainstAFlatWall)
 {
   EXPECT_NEAR(Dust::effective_radius(1.0, 1.0e12), 1.0, 1.0e-11);
   EXPECT_DOUBLE_EQ(Dust::effective_radius(2.0, 2.0), 1.0);

@@ -1,0 +1,175 @@
+// The law that follows each grain, in whole collisions, against a reference that follows each alone in tiny steps.
+
+#include "tangential_integration.h"
+
+#include "collision.h"
+#include "surface_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+using namespace Dust;
+
+namespace {
+
+// a step as Collision takes it, with the spin half a step earlier
+Motion motion_of(const History &h, size_t k)
+{
+  const Vec &a = h.a[k], alpha = 1.0 / h.dt * (h.spin[k] - (k ? h.spin[k - 1] : h.spin0)),
+            spin = h.spin[k] - 0.5 * h.dt * alpha;
+  return {{a.x, a.y, a.z}, {alpha.x, alpha.y, alpha.z}, {spin.x, spin.y, spin.z}};
+}
+
+// mode by grain, by Collision; handed over to another one every `handover` steps
+std::map<int, Mode> by_collision(const GrainTable &table, const History &h, int handover = 0)
+{
+  std::map<int, Mode> left;
+  std::vector<uint64_t> attached = table.all_attached();
+  Workspace work;
+  Collision collision;
+  const Motion earlier = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}};    // a collision before this one
+  collision.begin(Quaternion(), earlier.spin);
+  collision.step(table, earlier, 1.0, attached.data(), work);
+  collision.begin(Quaternion(), &h.spin0.x);
+  for (size_t k = 0; k <= h.a.size(); k++) {
+    if (k < h.a.size())
+      collision.step(table, motion_of(h, k), h.dt, attached.data(), work);
+    else
+      collision.end(table, &h.spin.back().x, attached.data(), work);
+    for (const Detachment &d : work.detached) left[table.grain(d.bit)] = d.mode;
+    work.detached.clear();
+    if (handover && k % handover == 0) {
+      std::vector<double> buf(collision.packed_size());
+      Packer packer(buf.data());
+      collision.pack(packer);
+      Collision other;
+      std::vector<uint64_t> all = table.all_attached();
+      other.begin(Quaternion(), earlier.spin);    // one that has been used
+      other.step(table, earlier, 1.0, all.data(), work);
+      work.detached.clear();
+      Unpacker unpacker(buf.data());
+      other.unpack(unpacker);
+      collision = std::move(other);
+    }
+  }
+  return left;
+}
+
+Criteria integrate()
+{
+  Criteria criteria;
+  criteria.tangential = Criteria::INTEGRATE;
+  return criteria;
+}
+
+struct Comparison {
+  int tangential = 0, close = 0, stay = 0;
+};
+
+// random collisions of a texture against the reference; grains whose load comes as close as `tolerance` to 1 may do
+// either
+Comparison compare(const Texture &texture, Material m, int collisions, double tolerance, double spin = 0.0)
+{
+  std::mt19937 random(3);
+  Comparison found;
+  for (int i = 0; i < collisions; i++) {
+    m.friction = i % 5 == 4 ? 0.0 : i % 5 == 3 ? 5.0 : 0.1 + 0.1 * (i % 4);
+    m.rolling = i % 4 == 2 ? 0.0 : i % 2 == 1 ? 3.0 : 0.15;
+    const GrainTable table(texture, m, integrate());
+    const History h = random_history(random, spin);
+    const std::map<int, Mode> left = by_collision(table, h);
+    EXPECT_EQ(by_collision(table, h, 17), left) << "collision " << i << " handed over";
+    for (size_t k = 0; k < texture.grains.size(); k++) {
+      const auto it = left.find(k);
+      if (it != left.end() && it->second == NORMAL) continue;
+      const bool leaves = it != left.end();
+      const double load = largest_load(texture.grains[k], texture.carrier_radius, m, h);
+      if (load > 1.0 + tolerance || load < 1.0 - tolerance) {
+        EXPECT_EQ(leaves, load > 1.0) << "collision " << i << " grain " << k << " load " << load;
+      } else
+        found.close++;
+      (leaves ? found.tangential : found.stay)++;
+    }
+    if (::testing::Test::HasFailure()) break;
+  }
+  return found;
+}
+
+}    // namespace
+
+TEST(TangentialIntegration, SameGrainsAsAReferenceInTinySteps)
+{
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius = RD;
+  const Comparison found = compare(texture, CALCITE, 60, 0.003);
+  EXPECT_GT(found.tangential, 300);    // the test tests something
+  EXPECT_GT(found.stay, 2000);
+  EXPECT_LT(found.close, 30);
+}
+
+TEST(TangentialIntegration, SameGrainsAsAReferenceForGrainsOfAllSizes)
+{
+  std::mt19937 random(4);
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius = RD * (0.3 + 2.2 * std::uniform_real_distribution<double>()(random));
+  const Comparison found = compare(texture, CALCITE, 40, 0.003);
+  EXPECT_GT(found.tangential, 100);
+  EXPECT_GT(found.stay, 500);
+}
+
+TEST(TangentialIntegration, SameGrainsOnACarrierThatTurns)
+{
+  // the spans of the record are longer than steps of time
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius = RD;
+  const Comparison found = compare(texture, CALCITE, 40, 0.1, 0.5 * std::sqrt(HOLD / SHELL));
+  EXPECT_GT(found.tangential, 80);    // more lift off while they stick
+  EXPECT_GT(found.stay, 1000);
+}
+
+TEST(TangentialIntegration, GrainsOfACollisionThatRingLeaveMore)
+{
+  // straight, as fast as it takes: squeezed on the north and let go
+  Texture texture = place_monolayer(RP, 2.0 * RD, 0.2, BareCap(), 1);
+  History h;
+  h.dt = 3.0e-6 / 600;
+  h.smooth = false;
+  for (int k = 0; k < 600; k++) h.a.push_back({0.0, 0.0, 50.0 * HOLD * std::sin(M_PI * (k + 0.5) / 600)});
+  h.spin.assign(600, Vec());
+  std::map<double, std::map<int, Mode>> left;
+  for (double zeta : {-1.0, 3.0, 0.06}) {
+    Material m = CALCITE;
+    m.damping = zeta;
+    const GrainTable table(texture, m, integrate());
+    left[zeta] = by_collision(table, h);
+    EXPECT_EQ(by_collision(table, h, 17), left[zeta]);
+  }
+  EXPECT_EQ(left[3.0], left[-1.0]);
+  EXPECT_GT(left[0.06].size(), left[-1.0].size() + 100);
+  for (const auto &grain : left[-1.0]) EXPECT_EQ(left[0.06].count(grain.first), 1u);
+}
+
+TEST(TangentialIntegration, AloneNeedsTheImpulses)
+{
+  std::mt19937 random(7);
+  const History h = random_history(random);
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  std::map<int, int> sizes;
+  for (auto tangential : {Criteria::OFF, Criteria::FRICTIONLESS, Criteria::ESTIMATE, Criteria::INTEGRATE}) {
+    Criteria criteria;
+    criteria.tangential = tangential;
+    const GrainTable table(texture, CALCITE, criteria);
+    std::vector<uint64_t> attached = table.all_attached();
+    Workspace work;
+    Collision collision;
+    collision.begin(Quaternion(), NO_SPIN);
+    for (size_t k = 0; k < h.a.size(); k++) collision.step(table, motion_of(h, k), h.dt, attached.data(), work);
+    sizes[tangential] = collision.packed_size();
+  }
+  EXPECT_EQ(sizes[Criteria::OFF], sizes[Criteria::ESTIMATE]);
+  EXPECT_EQ(sizes[Criteria::FRICTIONLESS], sizes[Criteria::ESTIMATE]);
+  EXPECT_GT(sizes[Criteria::INTEGRATE], sizes[Criteria::ESTIMATE] + 7 * ImpulseRecord::MAX_SPANS / 2);
+}
