@@ -104,6 +104,7 @@ void FixDustDetach::build()
   grow_arrays(atom->nmax);
   maxexchange = fixed_size() + 1 + exchange_room;
   adopt();
+  settings.save(texture);
 
   if (comm->me == 0) {
     utils::logmesg(
