@@ -18,12 +18,19 @@ static constexpr double UNSET = -1.0;
 
 DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
     DustOptions(_lmp, "Fix dust/detach"), friction(UNSET), rolling(0.15), damping(UNSET), every(1), keep_rows(true),
-    rotation(true), stiffen_acceleration(1.0), stiffen_time(1.0), lose_mass(false), emit(0), weightless(false)
+    rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), lose_mass(false), emit(0),
+    weightless(false)
 {
   constexpr int FIRST = 3;    // after ID, group and style
   Keywords(lmp, command, narg, arg).read(keywords(), FIRST);
   complete();
   check(igroup);
+}
+
+void DetachSettings::stiffen_by(double power)
+{
+  stiffen_acceleration = std::pow(stiffen, power);
+  stiffen_time = 1.0 / stiffen_acceleration;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -47,12 +54,7 @@ std::vector<Keyword> DetachSettings::keywords()
       {"every", [this](Keywords &words) { every = words.whole_number(1, MAXSMALLINT); }},
       {"rows", [this](Keywords &words) { keep_rows = words.yes_or_no(); }},
       {"rotation", [this](Keywords &words) { rotation = words.yes_or_no(); }},
-      {"stiffen",
-       [this](Keywords &words) {
-         // Hertz: F ~ E delta^1.5, so that for the same impact F ~ E^0.4 and time ~ E^-0.4
-         stiffen_acceleration = std::pow(words.number(Range::at_least(1.0)), 0.4);
-         stiffen_time = 1.0 / stiffen_acceleration;
-       }},
+      {"stiffen", [this](Keywords &words) { stiffen = words.number(Range::at_least(1.0)); }},
       {"mass",
        [this](Keywords &words) {
          lose_mass = words.yes_or_no();

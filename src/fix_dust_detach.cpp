@@ -4,7 +4,6 @@
 
 #include "fix_dust_detach.h"
 
-#include "core/jkr.h"
 #include "dust_atoms.h"
 #include "dust_gather.h"
 
@@ -12,14 +11,9 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_wall_gran.h"
-#include "force.h"
-#include "gran_sub_mod_normal.h"
-#include "granular_model.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
-#include "pair_granular.h"
 #include "update.h"
 
 #include <algorithm>
@@ -34,12 +28,12 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
+    Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
     attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), steps(0.0), began(nullptr),
-    newcomers(true), mine{}, shedding(lmp, settings.emit), too_soft(1.0), warned(false), exchange_room(0)
+    newcomers(true), mine{}, shedding(lmp, settings.emit), exchange_room(0)
 {
   collisions.work.locate = settings.keep_rows || settings.lose_mass;
-  check_order();    // of what is there already; the rest before a run
+  checks.check_order();    // of what is there already; the rest before a run
 
   scalar_flag = vector_flag = global_freq = 1;
   size_vector = DetachVector::SIZE;
@@ -119,11 +113,7 @@ int FixDustDetach::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NE
 
 void FixDustDetach::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix dust/detach works with run_style verlet, not with {}", update->integrate_style);
-
-  check_order();
-  look_for_soft_contacts();
+  checks.before_run();
 
   if (functions) {
     const double radius = settings.carrier_radius(igroup);
@@ -144,28 +134,6 @@ void FixDustDetach::init()
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
   weigh();
-}
-
-/* ----------------------------------------------------------------------
-   what post_force() finds in f must be contact forces, all of them and nothing else
-------------------------------------------------------------------------- */
-
-void FixDustDetach::check_order() const
-{
-  bool after = false;
-  for (const auto &other : modify->get_fix_list()) {
-    if (other == this) after = true;
-    if (utils::strmatch(other->style, "^dust/detach") || utils::strmatch(other->style, "^store/force")) continue;
-    const bool contact = utils::strmatch(other->style, "^wall/gran") || utils::strmatch(other->style, "^surface/");
-    if (contact && after)
-      error->all(FLERR, "Fix {} ({}) must stand before fix {} (dust/detach), which needs its contact forces", other->id,
-                 other->style, id);
-    if (!contact && !after && (modify->get_fix_mask(other) & POST_FORCE))
-      error->all(FLERR,
-                 "Fix {} ({}) must stand after fix {} (dust/detach), which would take its force for a contact "
-                 "force",
-                 other->id, other->style, id);
-  }
 }
 
 /* ----------------------------------------------------------------------
@@ -203,6 +171,7 @@ void FixDustDetach::post_neighbor()
     weigh();
   }
   drop_lost_collisions();
+  checks.tell();
 }
 
 /* ----------------------------------------------------------------------
@@ -244,7 +213,15 @@ void FixDustDetach::weigh()
    counts of its own, as the user may reset the number of the step
 ------------------------------------------------------------------------- */
 
-void FixDustDetach::initial_integrate(int /*vflag*/) { steps += 1.0; }
+void FixDustDetach::initial_integrate(int /*vflag*/)
+{
+  steps += 1.0;
+  checks.step_begins();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDustDetach::post_run() { checks.tell(); }
 
 /* ----------------------------------------------------------------------
    here f holds contact forces only
@@ -252,6 +229,7 @@ void FixDustDetach::initial_integrate(int /*vflag*/) { steps += 1.0; }
 
 void FixDustDetach::post_force(int /*vflag*/)
 {
+  if (functions) checks.look_at_sizes(carrier_radius);
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
@@ -343,21 +321,32 @@ Dust::Motion FixDustDetach::motion_of(int i) const
 
 void FixDustDetach::collide(int i)
 {
+  if (checks.holds(atom->mask[i])) return;
   const Dust::Motion motion = motion_of(i);
   if (state[i] == AT_REST && !functions->may_move(motion)) return;
   if (state[i] == FREE_FLIGHT) began[i] = steps;
   if (state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[state[i]];
-  if (collision.step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work)) record(i);
+  if (collision.step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work)) {
+    checks.grains_left(i, motion.acceleration, course_of(collision));
+    record(i);
+  }
+  checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), functions->min_hold());
   const bool grows = !collision.weak() || settings.criteria.tangential == Dust::Criteria::INTEGRATE;
   if (grows) make_exchange_room(collision);
   if (collision.at_rest()) finish_collision(i, AT_REST);
+}
+
+DeckChecks::Course FixDustDetach::course_of(const Dust::Collision &collision) const
+{
+  return {collision.impulse(), collision.peak_acceleration(), functions->min_hold()};
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
+  checks.check_size(i, carrier_radius);
   state[i] = collisions.take();
   Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
   if (settings.rotation) now.turn_by(angle[i], 1.0);
@@ -372,8 +361,8 @@ void FixDustDetach::finish_collision(int i, int next)
   Dust::Collision &collision = collisions[state[i]];
   const Dust::Motion motion = motion_of(i);
   if (collision.end(*functions, motion.spin, attached[i], collisions.work)) record(i);
-  const double peak = collision.peak_acceleration();
-  array_atom[i][DetachAtom::PEAK_ACCELERATION] = peak;
+  array_atom[i][DetachAtom::PEAK_ACCELERATION] = collision.peak_acceleration();
+  checks.collision_over(i, next == FREE_FLIGHT ? steps - began[i] : 0.0, course_of(collision));
   mine.collisions += 1.0;
   mine.north += collision.lost_north(*functions, attached[i]);
   mine.sliding += collision.grains_that(Dust::SLIDING, *functions, attached[i]);
@@ -381,15 +370,6 @@ void FixDustDetach::finish_collision(int i, int next)
   collisions.give_back(state[i]);
   state[i] = next;
   if (next == FREE_FLIGHT) leave_contact(i);
-
-  if (!warned && peak <= functions->min_hold() && peak * too_soft > functions->min_hold()) {
-    warned = true;
-    error
-        ->warning(FLERR,
-                  "Fix dust/detach {}: grains of carrier {} stay only because its contacts are softer than the carrier "
-                  "material: see keyword stiffen",
-                  id, atom->tag[i]);
-  }
 }
 
 void FixDustDetach::leave_contact(int i)
@@ -570,36 +550,6 @@ void FixDustDetach::pre_exchange()
 void FixDustDetach::shed()
 {
   mine.no_room += shedding.shed(steps, [this](int i) { return (atom->mask[i] & groupbit) && state[i] != NO_CARRIER; });
-}
-
-/* ----------------------------------------------------------------------
-   what stiff contacts of the carriers' material would do, by which factor more than those of the deck as they are taken
-------------------------------------------------------------------------- */
-
-void FixDustDetach::look_for_soft_contacts()
-{
-  too_soft = 1.0;
-  warned = false;
-  const double modulus =
-      Dust::combined_modulus(settings.elastic[2], settings.elastic[3], settings.elastic[2], settings.elastic[3]);
-  const auto look = [&](const Granular_NS::GranularModel *model) {
-    const Granular_NS::GranSubModNormal *normal = model->normal_model;
-    if (!normal->get_material_properties()) return;
-    const double E = normal->get_emod(), nu = normal->get_poiss();
-    too_soft = std::max(too_soft,
-                        std::pow(modulus / Dust::combined_modulus(E, nu, E, nu), 0.4) / settings.stiffen_acceleration);
-  };
-
-  std::vector<int> carriers(atom->ntypes + 1, 0);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit) carriers[atom->type[i]] = 1;
-  MPI_Allreduce(MPI_IN_PLACE, carriers.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
-  const auto *pair = dynamic_cast<PairGranular *>(force->pair);
-  for (int t = 1; pair && pair->types_indices && t <= atom->ntypes; t++)
-    if (carriers[t]) look(pair->models_list[pair->types_indices[t][t]]);
-  for (Fix *other : modify->get_fix_list())
-    if (const auto *wall = dynamic_cast<FixWallGran *>(other))
-      if (wall->model) look(wall->model);
 }
 
 /* ----------------------------------------------------------------------

@@ -14,6 +14,7 @@ FixStyle(dust/detach,FixDustDetach);
 #include "fix.h"
 
 #include "core/collision_pool.h"
+#include "deck_checks.h"
 #include "detach_settings.h"
 #include "detach_totals.h"
 #include "detachment_rows.h"
@@ -37,6 +38,7 @@ class FixDustDetach : public Fix {
   void initial_integrate(int) override;
   void post_neighbor() override;
   void post_force(int) override;
+  void post_run() override;
 
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -57,7 +59,8 @@ class FixDustDetach : public Fix {
 
  private:
   DetachSettings settings;
-  void check_order() const;
+  DeckChecks checks;
+  DeckChecks::Course course_of(const Dust::Collision &) const;
 
   // texture, once the size of the carriers is known
   double carrier_radius;    // 0 until then
@@ -104,11 +107,6 @@ class FixDustDetach : public Fix {
   // mass and grains that are still to leave
   DustShedding shedding;
   void shed();
-
-  // contacts of the deck that are softer than `stiffen` says
-  double too_soft;    // factor of the inertia, or 1
-  bool warned;
-  void look_for_soft_contacts();
 
   int exchange_room;    // for a collision in what a carrier takes along when it changes ranks
   void make_exchange_room(const Dust::Collision &);

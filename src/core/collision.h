@@ -104,6 +104,8 @@ class alignas(64) Collision {
 
   bool weak() const { return !strong; }
   double peak_acceleration() const;    //!< largest |contact acceleration| so far
+  /*! contact force/carrier mass, integrated since begin() */
+  const double *impulse() const { return course.impulse; }
   /*! Grains that have met the criterion of Eq. 2, SLIDING or ROLLING, since begin(); where no inertia could make any
    *  slide, those that have met it at the largest acceleration */
   int grains_that(Mode mode, const GrainTable &table, const uint64_t *attached) const;

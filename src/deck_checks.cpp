@@ -1,0 +1,364 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "deck_checks.h"
+
+#include "core/geometry.h"
+#include "core/jkr.h"
+#include "detach_settings.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+// steps that a contact should have at least: so few change the ratio by about 0.005. Softened contacts are for beds, which
+// cannot afford them, and are right to about 0.01 only
+static constexpr double ENOUGH_STEPS = 50.0, ENOUGH_SOFT_STEPS = 15.0;
+static constexpr double SOFTER = 1.05;               // by which a modulus may be too low
+static constexpr double MUCH_SOFTER = 2.0;           // in accelerations, where the modulus is not known
+static constexpr double HERTZ = 0.4, HOOKE = 0.5;    // F ~ stiffness^power for the same impact
+
+/* ---------------------------------------------------------------------- */
+
+DeckChecks::DeckChecks(LAMMPS *_lmp, const Fix *_dust, DetachSettings &_settings) :
+    Pointers(_lmp), dust(_dust), settings(_settings), fixes(_lmp, _dust, _settings.contacts), sizes_change(false),
+    unread(false), modulus(Dust::combined_modulus(_settings.elastic[2], _settings.elastic[3], _settings.elastic[2],
+                                                  _settings.elastic[3])),
+    softest(1.0), soft_wall(false), noticed(0), told(0)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DeckChecks::before_run()
+{
+  check_command();
+  fixes.check_order();
+  fixes.before_run(settings.rotation);
+  noticed = told = 0;
+  watched.stage = Watched::NONE;
+  sizes_change = false;
+  for (const Fix *fix : modify->get_fix_list()) sizes_change = sizes_change || fix->diam_flag;
+  look_at_contacts();
+  settle_stiffen();
+}
+
+/* ----------------------------------------------------------------------
+   `rerun` goes through the snapshots of a dump and makes no step: its init() is not at the first step of a run of so many
+------------------------------------------------------------------------- */
+
+void DeckChecks::check_command() const
+{
+  const char *style = update->integrate_style;
+  if (update->whichflag == 2)
+    error->all(FLERR, "Fix dust/detach {} works with run, not with minimize, in which nothing collides: unfix it",
+               dust->id);
+  if (utils::strmatch(style, "^respa") || utils::strmatch(style, "^verlet/split"))
+    error->all(FLERR, "Fix dust/detach works with run_style verlet, not with {}", style);
+  if (update->whichflag == 1 &&
+      (update->laststep - update->firststep != update->nsteps || update->ntimestep != update->firststep))
+    error->all(FLERR,
+               "Fix dust/detach {} works with run, not with rerun, which gives it the snapshots of a dump in place of "
+               "the steps of a collision: unfix it",
+               dust->id);
+}
+
+/* ----------------------------------------------------------------------
+   of those in the group; if none is there yet, all that may come
+------------------------------------------------------------------------- */
+
+std::vector<int> DeckChecks::types_of_carriers() const
+{
+  std::vector<int> types(atom->ntypes + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & dust->groupbit) types[atom->type[i]] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  if (std::count(types.begin(), types.end(), 1) == 0) {
+    std::fill(types.begin() + 1, types.end(), 1);
+    types[settings.emit] = 0;
+  }
+  return types;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DeckChecks::look_at_contacts()
+{
+  const DeckContacts deck(lmp, types_of_carriers());
+  contacts = deck.all;
+  unread = !deck.other_styles.empty() || fixes.has_contacts();
+  pulling.clear();
+  softest = 1.0;
+  soft_wall = false;
+  for (const CarrierContact &contact : contacts) {
+    if (contact.pulls)
+      pulling += fmt::format("{}{} (damping {})", pulling.empty() ? "" : ", ", contact.where, contact.damping);
+    if (contact.law == CarrierContact::HOOKE || contact.stiffness <= 0.0) continue;
+    const double factor = modulus / (contact.stiffness * settings.stiffen);
+    if (factor <= softest) continue;
+    softest = factor;
+    soft = contact.where;
+    soft_wall = contact.wall;
+  }
+  for (const std::string &style : deck.far_styles)
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix dust/detach {}: the forces of pair_style {} count as contact forces, at whatever distance they "
+          "act",
+          dust->id, style);
+}
+
+/* ----------------------------------------------------------------------
+   by which power it acts; all contacts of carriers must have the same
+------------------------------------------------------------------------- */
+
+void DeckChecks::settle_stiffen()
+{
+  if (settings.stiffen == 1.0) return;
+  const CarrierContact *first = nullptr;
+  for (const CarrierContact &contact : contacts) {
+    if (!contact.not_stiffened.empty())
+      error->all(FLERR, "Fix dust/detach {} stiffen: does not hold for {}, which {}", dust->id, contact.where,
+                 contact.not_stiffened);
+    if (!first) first = &contact;
+    if (contact.law != first->law)
+      error->all(FLERR, "Fix dust/detach {} stiffen: {} and {} must both be Hertz or both be Hooke contacts", dust->id,
+                 first->where, contact.where);
+    constexpr double RIGID_WALL = 2.0;    // E* of two bodies of which one is rigid, in that of two alike
+    if (contact.law == CarrierContact::HERTZ && contact.stiffness * settings.stiffen > 1.05 * RIGID_WALL * modulus &&
+        comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix dust/detach {}: {} is {:.4g} times softer than the carrier material (keyword elastic), and not "
+          "{:.4g} times as stiffen says: inertia is too large",
+          dust->id, contact.where, modulus / contact.stiffness, settings.stiffen);
+  }
+  if (unread)
+    error->all(
+        FLERR,
+        "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and fix wall/gran only, not for those "
+        "of other pair styles and of keyword contact",
+        dust->id);
+  if (first) settings.stiffen_by(first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DeckChecks::check_size(int i, double radius) const
+{
+  if (!DustOptions::same_size(atom->radius[i], radius))
+    error->one(
+        FLERR,
+        "Fix dust/detach {} carrier {} has diameter {} now, and {} when its texture was made: the size of carriers "
+        "must not change",
+        dust->id, atom->tag[i], 2.0 * atom->radius[i], 2.0 * radius);
+}
+
+void DeckChecks::check_all_sizes(double radius) const
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & dust->groupbit) check_size(i, radius);
+}
+
+/* ----------------------------------------------------------------------
+   whether carrier i touches no other atom: what pushes it then is one wall, or walls no more than 90 degrees apart
+------------------------------------------------------------------------- */
+
+bool DeckChecks::alone(int i) const
+{
+  constexpr double NEAR = 1.01;
+  for (int j = 0; j < atom->nlocal + atom->nghost; j++) {
+    if (j == i) continue;
+    const double *a = atom->x[i], *b = atom->x[j], d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    const double reach = NEAR * (atom->radius[i] + atom->radius[j]);
+    if (Dust::dot(d, d) < reach * reach) return false;
+  }
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   A contact that only pushes never acts against the impulse that it has given. One that does, stronger than the adhesion,
+   throws off grains on the far side.
+------------------------------------------------------------------------- */
+
+void DeckChecks::grains_left(int i, const double *acceleration, const Course &course)
+{
+  if ((noticed & bit(PULLS)) || (pulling.empty() && !unread)) return;
+  const double along = Dust::dot(acceleration, course.impulse),
+               impulse = std::sqrt(Dust::dot(course.impulse, course.impulse));
+  if (along >= -course.min_hold * impulse) return;
+  if (pulling.empty() && !alone(i)) return;
+  notice(PULLS,
+         fmt::format("a contact force pulls carrier {} back at the end of its rebound, and grains leave for it: {}",
+                     atom->tag[i],
+                     pulling.empty() ? "use contacts that do not"
+                                     : pulling + "; use damping coeff_restitution/limited, or limit_damping"));
+}
+
+/* ----------------------------------------------------------------------
+   steps: with contact, if it is over; 0 if the carrier has come to rest with it
+------------------------------------------------------------------------- */
+
+void DeckChecks::collision_over(int i, double steps, const Course &course)
+{
+  const double enough = settings.stiffen > 1.0 ? ENOUGH_SOFT_STEPS : ENOUGH_STEPS;
+  if (!(noticed & bit(FEW_STEPS)) && steps > 0.0 && steps < enough && course.peak > course.min_hold)
+    notice(
+        FEW_STEPS,
+        fmt::format("carrier {} was in contact for {} steps, too few to follow its collision: use a timestep of {:.2g} "
+                    "or less, for {} steps",
+                    atom->tag[i], steps, update->dt * steps / enough, enough));
+  if (noticed & bit(SOFT)) return;
+  const Softness softness = soft_contact(i, steps, course);
+  if (softness.factor <= 1.0 || course.peak * softness.factor <= course.min_hold) return;
+  notice(SOFT,
+         fmt::format("{} softer than contacts of the carrier material (keyword elastic), and the inertia of carrier {} "
+                     "{:.3g} times too small: {}",
+                     softness.which, atom->tag[i], softness.factor, softness.advice));
+}
+
+/* ----------------------------------------------------------------------
+   peak force of the Hertz impact of two bodies with this effective radius, mass and relative speed
+------------------------------------------------------------------------- */
+
+static double hertz_peak(double modulus, double radius, double mass, double speed)
+{
+  return std::pow(4.0 / 3.0 * modulus * std::sqrt(radius), 0.4) * std::pow(1.25 * mass * speed * speed, 0.6);
+}
+
+/* ----------------------------------------------------------------------
+   by which factor the inertia of carrier i would be larger in contacts of its material; its impulse is 1 to 2 times its speed
+------------------------------------------------------------------------- */
+
+DeckChecks::Softness DeckChecks::soft_contact(int i, double steps, const Course &course) const
+{
+  const std::string but_walls = "; a wall that is as soft in truth needs nothing";
+  if (softest > SOFTER)
+    return {std::pow(softest, HERTZ), fmt::format("{} is {:.4g} times", soft, softest * settings.stiffen),
+            fmt::format("give stiffen {:.4g}{}", softest * settings.stiffen, soft_wall ? but_walls : "")};
+  const double mass = atom->rmass[i], radius = atom->radius[i];
+  const double speed = 0.5 * std::sqrt(Dust::dot(course.impulse, course.impulse));
+  for (const CarrierContact &contact : contacts) {
+    if (contact.law != CarrierContact::HOOKE) continue;
+    // two alike, or one and a wall
+    const double share = contact.wall ? 1.0 : 0.5, approach = speed / share;
+    const double factor = hertz_peak(modulus, share * radius, share * mass, approach) /
+                          (approach * std::sqrt(contact.stiffness * share * mass) * settings.stiffen_acceleration);
+    if (factor > MUCH_SOFTER)
+      return {factor, contact.where + " is", "use a larger stiffness, or stiffen" + (contact.wall ? but_walls : "")};
+  }
+  if (unread && steps > 0.0 && bounced(i, steps, course.impulse)) {
+    const double factor = hertz_peak(modulus, radius, mass, speed) / (mass * course.peak);
+    if (factor > MUCH_SOFTER && alone(i)) return {factor, "the contact is", "use a larger stiffness" + but_walls};
+  }
+  return {1.0, "", ""};
+}
+
+/* ----------------------------------------------------------------------
+   whether one push has turned back carrier i: it came against its impulse, went off along it, and did not get far meanwhile
+------------------------------------------------------------------------- */
+
+bool DeckChecks::bounced(int i, double steps, const double *impulse) const
+{
+  const double *v = atom->v[i], size2 = Dust::dot(impulse, impulse), after = Dust::dot(v, impulse);
+  const double before[3] = {v[0] - impulse[0], v[1] - impulse[1], v[2] - impulse[2]};
+  const double fastest2 = std::max(Dust::dot(v, v), Dust::dot(before, before)), time = steps * update->dt;
+  return after > 0.0 && after < size2 && fastest2 * time * time < atom->radius[i] * atom->radius[i];
+}
+
+/* ----------------------------------------------------------------------
+   The velocity before and after a step, and the contact forces that change it: by the mean of both, or by the second if the
+   integrator stands before this fix. Atoms do not change places between the force and the step that follows.
+------------------------------------------------------------------------- */
+
+void DeckChecks::look_at_force(int i)
+{
+  const tagint tag = atom->tag ? atom->tag[i] : 0;
+  if (watched.stage == Watched::NONE) {
+    watched.stage = Watched::FORCE;
+    watched.i = i;
+    watched.tag = tag;
+    watched.mass = atom->rmass[i];
+    watched.dt = update->dt;
+    std::copy_n(atom->f[i], 3, watched.force);
+  } else if (watched.stage == Watched::VELOCITY && watched.i == i && watched.tag == tag) {
+    watched.stage = Watched::FORCES;
+    std::copy_n(atom->f[i], 3, watched.next_force);
+  }
+}
+
+void DeckChecks::look_at_velocity()
+{
+  const int i = watched.i;
+  const bool same = i < atom->nlocal && watched.tag == (atom->tag ? atom->tag[i] : 0) &&
+                    watched.mass == atom->rmass[i] && watched.dt == update->dt;
+  if (same && watched.stage == Watched::FORCE) {
+    watched.stage = Watched::VELOCITY;
+    std::copy_n(atom->v[i], 3, watched.velocity);
+    return;
+  }
+  const bool complete = same && watched.stage == Watched::FORCES;
+  watched.stage = Watched::NONE;
+  if (!complete || follows(atom->v[i])) return;
+  const std::string suspects = fixes.suspects(i);
+  notice(NOT_FOLLOWED,
+         fmt::format(
+             "carrier {} does not move as its contact force says, and what it loses is not right: other fixes hold or "
+             "push it{}{}",
+             atom->tag[i], suspects.empty() ? "" : ", such as fix ", suspects));
+}
+
+bool DeckChecks::follows(const double *velocity) const
+{
+  constexpr double PART = 0.3;
+  const double per = watched.dt / watched.mass, *f = watched.force, *g = watched.next_force;
+  double mean2 = 0.0, second2 = 0.0;
+  for (int d = 0; d < 3; d++) {
+    const double change = velocity[d] - watched.velocity[d];
+    const double mean = change - 0.5 * per * (f[d] + g[d]), second = change - per * g[d];
+    mean2 += mean * mean;
+    second2 += second * second;
+  }
+  const double largest2 = per * per * std::max(Dust::dot(f, f), Dust::dot(g, g));
+  return std::min(mean2, second2) <= PART * PART * largest2;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DeckChecks::notice(Notice what, const std::string &line)
+{
+  noticed |= bit(what);
+  lines[what] = line;
+  if (comm->nprocs == 1) tell();
+}
+
+void DeckChecks::tell()
+{
+  watched.stage = Watched::NONE;
+  if (told == bit(NNOTICES) - 1) return;
+  unsigned all = noticed & ~told;
+  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UNSIGNED, MPI_BOR, world);
+  for (int what = 0; what < NNOTICES; what++) {
+    const unsigned its = bit(static_cast<Notice>(what));
+    if (!(all & its)) continue;
+    int who = (noticed & its) ? comm->me : comm->nprocs;
+    MPI_Allreduce(MPI_IN_PLACE, &who, 1, MPI_INT, MPI_MIN, world);
+    int length = static_cast<int>(lines[what].size());
+    MPI_Bcast(&length, 1, MPI_INT, who, world);
+    lines[what].resize(length);
+    MPI_Bcast(lines[what].data(), length, MPI_CHAR, who, world);
+    if (comm->me == 0) error->warning(FLERR, "Fix dust/detach {}: {}", dust->id, lines[what]);
+  }
+  noticed |= all;
+  told |= all;
+}

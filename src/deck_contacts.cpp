@@ -1,0 +1,146 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "deck_contacts.h"
+
+#include "core/jkr.h"
+
+#include "atom.h"
+#include "fix_wall_gran.h"
+#include "force.h"
+#include "gran_sub_mod_damping.h"
+#include "gran_sub_mod_normal.h"
+#include "gran_sub_mod_tangential.h"
+#include "granular_model.h"
+#include "modify.h"
+#include "pair_granular.h"
+
+using namespace LAMMPS_NS;
+using Granular_NS::GranularModel;
+
+namespace {
+
+CarrierContact::Law law_of(const GranularModel *model)
+{
+  const std::string &name = model->normal_model->name;
+  if (name == "hertz" || name == "hertz/material") return CarrierContact::HERTZ;
+  if (name == "hooke") return CarrierContact::HOOKE;
+  return CarrierContact::OTHER;
+}
+
+// normal elastic force of a Hertz or Hooke model with overlap and contact radius 1; what this changes is set for each contact
+double unit_force(GranularModel *model)
+{
+  model->delta = model->contact_radius = 1.0;
+  return model->normal_model->calculate_forces();
+}
+
+double stiffness_of(GranularModel *model, bool mixed)
+{
+  switch (law_of(model)) {
+    case CarrierContact::HERTZ: return 0.75 * unit_force(model);
+    case CarrierContact::HOOKE: return unit_force(model);
+    default: break;
+  }
+  const Granular_NS::GranSubModNormal *normal = model->normal_model;
+  if (!normal->get_material_properties()) return 0.0;
+  const double E = normal->get_emod(), nu = normal->get_poiss();
+  return mixed ? E : Dust::combined_modulus(E, nu, E, nu);    // LAMMPS' mixed models have E* for their E
+}
+
+/* ----------------------------------------------------------------------
+   whether two bodies that come apart fast enough are pulled back by the damping
+------------------------------------------------------------------------- */
+
+bool damping_pulls(GranularModel *model)
+{
+  if (model->limit_damping) return false;
+  if (law_of(model) == CarrierContact::OTHER) return true;    // not to be had without a contact at hand
+  model->meff = 1.0;
+  model->vnnr = 1.0e30;
+  model->Fnormal = unit_force(model);
+  return model->Fnormal + model->damping_model->calculate_forces() < 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   With contacts S times softer the same impact is S^0.4 (Hertz) or S^0.5 (Hooke) times longer. All of its forces must be so.
+------------------------------------------------------------------------- */
+
+std::string reason_not_to_stiffen(const GranularModel *model, double stiffness)
+{
+  const CarrierContact::Law law = law_of(model);
+  if (law == CarrierContact::OTHER) return "is " + model->normal_model->name;
+  const std::string &friction = model->tangential_model->name;
+  const double *coeffs = model->tangential_model->coeffs;
+  const double mu = coeffs[model->tangential_model->num_coeffs - 1];
+  if (mu == 0.0 || utils::strmatch(friction, "nohistory")) return "";
+  const bool mindlin = utils::strmatch(friction, "^mindlin");
+  if (mindlin != (law == CarrierContact::HERTZ))
+    return fmt::format("has {} friction with {} contacts", friction, model->normal_model->name);
+  // Mindlin's stiffness is 3 (1 - nu)/(2 - nu) times Hertz' 4/3 E*, at most 1.5 times for positive nu: a larger one has not
+  // been softened as well. NULL is that of the material.
+  constexpr double LARGEST = 1.6;
+  if (mindlin && coeffs[0] > LARGEST * (4.0 / 3.0) * stiffness)
+    return fmt::format("has a tangential stiffness of {:.4g}, which is not as soft as its normal one: use NULL",
+                       coeffs[0]);
+  return "";
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+CarrierContact::CarrierContact(const std::string &_where, GranularModel *model, bool mixed, bool _wall) :
+    where(_where), damping(model->damping_model->name), wall(_wall), law(law_of(model)),
+    stiffness(stiffness_of(model, mixed)), pulls(damping_pulls(model)),
+    not_stiffened(reason_not_to_stiffen(model, stiffness))
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<int> &types) : Pointers(_lmp)
+{
+  if (force->pair && !utils::strmatch(force->pair_style, "^hybrid"))
+    look_at_style(force->pair, force->pair_style, types);
+  else if (force->pair) {
+    // all sub-styles: the hybrid's own name begins with h; a single one comes again and again
+    Pair *last = nullptr;
+    for (int k = 1; Pair *pair = force->pair_match("^[^h]", 0, k); k++) {
+      if (pair == last) break;
+      look_at_style(pair, force->pair_match_ptr(pair), types);
+      last = pair;
+    }
+  }
+
+  for (Fix *fix : modify->get_fix_list())
+    if (const auto *wall = dynamic_cast<FixWallGran *>(fix))
+      if (wall->model) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, true);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std::vector<int> &types)
+{
+  if (utils::strmatch(style, "^granular")) return look_at_pairs(dynamic_cast<PairGranular *>(pair), types);
+  if (utils::strmatch(style, "^zero")) return;
+  bool acts = false;
+  for (int t = 1; t <= atom->ntypes; t++) acts = acts || (types[t] && pair->setflag && pair->setflag[t][t]);
+  if (!acts) return;
+  other_styles.push_back(style);
+  if (!utils::strmatch(style, "^gran/") && !utils::strmatch(style, "^surf/gran")) far_styles.push_back(style);
+}
+
+void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<int> &types)
+{
+  if (!pair || !pair->setflag || !pair->types_indices) return;
+  for (int t = 1; t <= atom->ntypes; t++)
+    for (int u = t; u <= atom->ntypes; u++) {
+      // what is not given has been mixed, but as part of a hybrid it has not all pairs of types
+      const bool given = pair->setflag[t][u];
+      if (!types[t] || !types[u] || !(given || pair == force->pair)) continue;
+      all.emplace_back(fmt::format("pair_coeff {} {}", t, u), pair->models_list[pair->types_indices[t][u]], !given,
+                       false);
+    }
+}

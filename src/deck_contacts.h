@@ -1,0 +1,52 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_DECK_CONTACTS_H
+#define LMP_DECK_CONTACTS_H
+
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+namespace Granular_NS {
+class GranularModel;
+}
+
+// one contact model of a deck that carriers meet, as far as it can be read
+
+struct CarrierContact {
+  enum Law { HERTZ, HOOKE, OTHER };
+
+  CarrierContact(const std::string &where, class Granular_NS::GranularModel *model, bool mixed, bool wall);
+
+  std::string where;      // "pair_coeff 1 1", "fix wall"
+  std::string damping;    // name of the model
+  bool wall;
+  Law law;
+  double stiffness;    // HERTZ: E* = 3/4 force/(overlap x contact radius); HOOKE: force/overlap; OTHER: E*, 0 unknown
+  bool pulls;          // its damping may do so
+  std::string not_stiffened;    // why softening it by one factor is not softening all of its forces alike, or empty
+};
+
+// the models between the carriers of these types, types[type] != 0, and between carriers and walls
+
+class DeckContacts : protected Pointers {
+ public:
+  DeckContacts(class LAMMPS *, const std::vector<int> &types);
+
+  std::vector<CarrierContact> all;
+  // pair styles that push carriers but are no granular models; those of them that act beyond contact
+  std::vector<std::string> other_styles, far_styles;
+
+ private:
+  void look_at_style(class Pair *, const std::string &style, const std::vector<int> &types);
+  void look_at_pairs(class PairGranular *, const std::vector<int> &types);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
