@@ -20,8 +20,8 @@
 
 using namespace LAMMPS_NS;
 
-// steps that a contact should have at least: so few change the ratio by about 0.005. Softened contacts are for beds, which
-// cannot afford them, and are right to about 0.01 only
+// steps that a contact should have at least: so few change the ratio by about 0.005. Softened contacts are for beds,
+// which cannot afford them, and are right to about 0.01 only
 static constexpr double ENOUGH_STEPS = 50.0, ENOUGH_SOFT_STEPS = 15.0;
 static constexpr double SOFTER = 1.05;               // by which a modulus may be too low
 static constexpr double MUCH_SOFTER = 2.0;           // in accelerations, where the modulus is not known
@@ -53,7 +53,8 @@ void DeckChecks::before_run()
 }
 
 /* ----------------------------------------------------------------------
-   `rerun` goes through the snapshots of a dump and makes no step: its init() is not at the first step of a run of so many
+   `rerun` goes through the snapshots of a dump and makes no step: its init() is not at the first step of a run of so
+   many
 ------------------------------------------------------------------------- */
 
 void DeckChecks::check_command() const
@@ -187,8 +188,8 @@ bool DeckChecks::alone(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   A contact that only pushes never acts against the impulse that it has given. One that does, stronger than the adhesion,
-   throws off grains on the far side.
+   A contact that only pushes never acts against the impulse that it has given. One that does, stronger than the
+   adhesion, throws off grains on the far side.
 ------------------------------------------------------------------------- */
 
 void DeckChecks::grains_left(int i, const double *acceleration, const Course &course)
@@ -237,7 +238,8 @@ static double hertz_peak(double modulus, double radius, double mass, double spee
 }
 
 /* ----------------------------------------------------------------------
-   by which factor the inertia of carrier i would be larger in contacts of its material; its impulse is 1 to 2 times its speed
+   by which factor the inertia of carrier i would be larger in contacts of its material; its impulse is 1 to 2 times
+   its speed
 ------------------------------------------------------------------------- */
 
 DeckChecks::Softness DeckChecks::soft_contact(int i, double steps, const Course &course) const
@@ -265,7 +267,8 @@ DeckChecks::Softness DeckChecks::soft_contact(int i, double steps, const Course 
 }
 
 /* ----------------------------------------------------------------------
-   whether one push has turned back carrier i: it came against its impulse, went off along it, and did not get far meanwhile
+   whether one push has turned back carrier i: it came against its impulse, went off along it, and did not get far
+   meanwhile
 ------------------------------------------------------------------------- */
 
 bool DeckChecks::bounced(int i, double steps, const double *impulse) const
@@ -277,8 +280,8 @@ bool DeckChecks::bounced(int i, double steps, const double *impulse) const
 }
 
 /* ----------------------------------------------------------------------
-   The velocity before and after a step, and the contact forces that change it: by the mean of both, or by the second if the
-   integrator stands before this fix. Atoms do not change places between the force and the step that follows.
+   The velocity before and after a step, and the contact forces that change it: by the mean of both, or by the second
+   if the integrator stands before this fix. Atoms do not change places between the force and the step that follows.
 ------------------------------------------------------------------------- */
 
 void DeckChecks::look_at_force(int i)

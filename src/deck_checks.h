@@ -16,9 +16,9 @@
 
 namespace LAMMPS_NS {
 
-// What looks right and is not: a deck that asks a fix dust/detach for what it cannot do right gets a line. What can be told
-// before a run stops it or is a warning then. What a run has to show is noticed by the rank that has the carrier, once a
-// run, and said by the first rank, when all ranks are together.
+// What looks right and is not: a deck that asks a fix dust/detach for what it cannot do right gets a line. What can be
+// told before a run stops it or is a warning then. What a run has to show is noticed by the rank that has the carrier,
+// once a run, and said by the first rank, when all ranks are together.
 
 class DeckChecks : protected Pointers {
  public:
@@ -44,18 +44,18 @@ class DeckChecks : protected Pointers {
   struct Course {
     const double *impulse;    // per mass
     double peak;              // acceleration
-    double min_hold;        // pull-off force per grain mass
+    double least_hold;        // pull-off force per grain mass
   };
   // in a step with contact force in which grains left carrier i
   void grains_left(int i, const double *acceleration, const Course &);
   // in the end of a collision of carrier i: so many steps after it has come the contact is lost; or it lasts, 0 steps
   void collision_over(int i, double steps, const Course &);
 
-  // whether another fix changes the motion that the contact force gives a carrier: one carrier is watched at a time, over two
-  // strong steps
-  void watch(int i, double acceleration2, double min_hold)
+  // whether another fix changes the motion that the contact force gives a carrier: one carrier is watched at a time,
+  // over two strong steps
+  void watch(int i, double acceleration2, double least_hold)
   {
-    if (!(noticed & bit(NOT_FOLLOWED)) && acceleration2 > min_hold * min_hold) look_at_force(i);
+    if (!(noticed & bit(NOT_FOLLOWED)) && acceleration2 > least_hold * least_hold) look_at_force(i);
   }
   void step_begins()
   {

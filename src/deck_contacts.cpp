@@ -29,7 +29,8 @@ CarrierContact::Law law_of(const GranularModel *model)
   return CarrierContact::OTHER;
 }
 
-// normal elastic force of a Hertz or Hooke model with overlap and contact radius 1; what this changes is set for each contact
+// normal elastic force of a Hertz or Hooke model with overlap and contact radius 1; what this changes is set for each
+// contact
 double unit_force(GranularModel *model)
 {
   model->delta = model->contact_radius = 1.0;
@@ -64,7 +65,8 @@ bool damping_pulls(GranularModel *model)
 }
 
 /* ----------------------------------------------------------------------
-   With contacts S times softer the same impact is S^0.4 (Hertz) or S^0.5 (Hooke) times longer. All of its forces must be so.
+   With contacts S times softer the same impact is S^0.4 (Hertz) or S^0.5 (Hooke) times longer. All of its forces must
+   be so.
 ------------------------------------------------------------------------- */
 
 std::string reason_not_to_stiffen(const GranularModel *model, double stiffness)
@@ -78,8 +80,8 @@ std::string reason_not_to_stiffen(const GranularModel *model, double stiffness)
   const bool mindlin = utils::strmatch(friction, "^mindlin");
   if (mindlin != (law == CarrierContact::HERTZ))
     return fmt::format("has {} friction with {} contacts", friction, model->normal_model->name);
-  // Mindlin's stiffness is 3 (1 - nu)/(2 - nu) times Hertz' 4/3 E*, at most 1.5 times for positive nu: a larger one has not
-  // been softened as well. NULL is that of the material.
+  // Mindlin's stiffness is 3 (1 - nu)/(2 - nu) times Hertz' 4/3 E*, at most 1.5 times for positive nu: a larger one
+  // has not been softened as well. NULL is that of the material.
   constexpr double LARGEST = 1.6;
   if (mindlin && coeffs[0] > LARGEST * (4.0 / 3.0) * stiffness)
     return fmt::format("has a tangential stiffness of {:.4g}, which is not as soft as its normal one: use NULL",
