@@ -28,9 +28,10 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), carrier_radius(0.0), texture_checksum(0.0), state(nullptr),
-    attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr), steps(0.0), began(nullptr),
-    newcomers(true), mine{}, shedding(lmp, settings.emit), exchange_room(0)
+    Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), carrier_radius(0.0),
+    texture_checksum(0.0), state(nullptr), attached(nullptr), orientation(nullptr), angle(nullptr),
+    window_mass(nullptr), steps(0.0), began(nullptr), newcomers(true), mine{}, shedding(lmp, settings.emit),
+    exchange_room(0)
 {
   collisions.work.locate = settings.keep_rows || settings.lose_mass;
   checks.check_order();    // of what is there already; the rest before a run
