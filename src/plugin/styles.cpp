@@ -89,12 +89,13 @@ class Registry {
     for (const Fix *fix : lmp->modify->get_fix_list())
       if (registered.count(std::string("fix ") + fix->style))
         look(std::string("fix ") + fix->id + " (" + fix->style + ")", typeid(*fix));
-    if (!earlier.empty() && lmp->comm->me == 0)
-      lmp->error
-          ->warning(FLERR,
-                    "dustplugin.so was loaded after {}, which then knows none of its models such as "
-                    "coeff_restitution/limited: give pair_style, pair_coeff and these fixes again after plugin load",
-                    earlier);
+    if (earlier.empty() || lmp->comm->me != 0) return;
+    Error *error = lmp->error;
+    error->warning(FLERR,
+                   "dustplugin.so was loaded after {}: what was there before knows none of its models, such as "
+                   "coeff_restitution/limited. Load it earlier, or now give pair_style none, then pair_style and "
+                   "pair_coeff again, and these fixes with the same IDs",
+                   earlier);
   }
 
  private:
