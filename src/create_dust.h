@@ -31,6 +31,8 @@ class CreateDust : public Command {
     double tag, x[3], v[3], omega[3];
   };
   std::vector<Carrier> all_carriers(int) const;
+  void warn_of_crushed_grains(const Dust::Texture &, const std::vector<Carrier> &, const class DustOptions &,
+                              int groupbit) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -5,6 +5,7 @@
 #include "deck_checks.h"
 
 #include "core/geometry.h"
+#include "core/hertz.h"
 #include "core/jkr.h"
 #include "detach_settings.h"
 
@@ -246,15 +247,6 @@ void DeckChecks::collision_over(int i, double steps, const Course &course)
 }
 
 /* ----------------------------------------------------------------------
-   peak force of the Hertz impact of two bodies with this effective radius, mass and relative speed
-------------------------------------------------------------------------- */
-
-static double hertz_peak(double modulus, double radius, double mass, double speed)
-{
-  return std::pow(4.0 / 3.0 * modulus * std::sqrt(radius), 0.4) * std::pow(1.25 * mass * speed * speed, 0.6);
-}
-
-/* ----------------------------------------------------------------------
    by which factor the inertia of carrier i would be larger in contacts of its material; its impulse is 1 to 2 times
    its speed
 ------------------------------------------------------------------------- */
@@ -269,7 +261,7 @@ DeckChecks::Softness DeckChecks::soft_contact(int i, double steps, const Course 
   const double mass = atom->rmass[i], radius = atom->radius[i];
   const double speed = 0.5 * std::sqrt(Dust::dot(course.impulse, course.impulse));
   const auto stiff_peak = [&](double share) {
-    return hertz_peak(modulus, share * radius, share * mass, speed / share);
+    return Dust::hertz_peak_force(modulus, share * radius, share * mass, speed / share);
   };
   for (const CarrierContact &contact : contacts) {
     if (contact.law != CarrierContact::HOOKE) continue;
