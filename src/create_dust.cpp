@@ -4,6 +4,7 @@
 
 #include "create_dust.h"
 
+#include "core/hertz.h"
 #include "core/jkr.h"
 #include "dust_atoms.h"
 #include "dust_gather.h"
@@ -48,6 +49,7 @@ void CreateDust::command(int narg, char **arg)
   const std::vector<Site> sites = sites_of(texture, options);
   const std::vector<Carrier> carriers = all_carriers(group->bitmask[igroup], options);
   check_room(carriers, sites);
+  warn_of_crushed_grains(texture, carriers, options, group->bitmask[igroup]);
   options.save(texture);
   create(type, carriers, sites);
 }
@@ -153,4 +155,39 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const Du
     carriers.push_back(carrier);
   }
   return carriers;
+}
+
+/* ----------------------------------------------------------------------
+   of a carrier that meets a wall of its material with the middle of its bare cap, as fast as it moves that way now: no
+   grain may reach the wall before the carrier's largest overlap, as it would brake the carrier
+------------------------------------------------------------------------- */
+
+void CreateDust::warn_of_crushed_grains(const Dust::Texture &texture, const std::vector<Carrier> &carriers,
+                                        const DustOptions &options, int groupbit) const
+{
+  const double R = texture.carrier_radius, E = options.elastic[2], nu = options.elastic[3];
+  const double *axis = texture.bare.axis;
+  double speed = 0.0;
+  for (const Carrier &c : carriers)
+    speed = std::max(speed, options.same_orientation() ? MathExtra::dot3(c.v, axis) : MathExtra::len3(c.v));
+  double mass = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) mass = std::max(mass, atom->rmass[i]);
+  MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double overlap = Dust::hertz_overlap(Dust::combined_modulus(E, nu, E, nu), R, mass, speed);
+
+  int crushed = 0;
+  double widest = 0.0;    // half-angle of the cap that would be needed
+  for (const Dust::Grain &grain : texture.grains) {
+    const double level = (R - overlap - grain.radius) / (R + grain.radius);
+    if (MathExtra::dot3(grain.n, axis) <= level) continue;
+    crushed++;
+    widest = std::max(widest, std::acos(level));
+  }
+  if (crushed && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Create_dust: {} grains of a carrier reach a wall before the carrier has reached its largest overlap, "
+        "are crushed there and brake it: use bare {:.2f}",
+        crushed, std::ceil(100.0 * widest) / 100.0);
 }

@@ -40,6 +40,8 @@ class CreateDust : public Command {
   std::vector<Carrier> all_carriers(int groupbit, const DustOptions &) const;
   void check_room(const std::vector<Carrier> &, const std::vector<Site> &) const;
   void create(int type, const std::vector<Carrier> &, const std::vector<Site> &);
+  void warn_of_crushed_grains(const Dust::Texture &, const std::vector<Carrier> &, const class DustOptions &,
+                              int groupbit) const;
 };
 
 }    // namespace LAMMPS_NS
