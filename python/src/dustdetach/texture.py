@@ -25,9 +25,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidInput, shown
-from .files import as_path, read_text, replace_file, scratch_folder
-from .impact import Impact, finite_number
+from .errors import InvalidInput, MachineFault, shown
+from .files import as_path, read_text, replace_file, scratch_folder, writable_file
+from .impact import Impact, as_impact, finite_number
 from .session import lammps_file, lammps_session
 
 HEADER = "# dust texture 1"
@@ -66,6 +66,9 @@ class Texture:
         """X0: summed cross-section of the grains over the carrier's surface."""
         return float(np.sum(self.diameters**2) / (4 * self.carrier_diameter**2))
 
+
+#: in a texture file
+BYTES_A_GRAIN = 100
 
 DISTRIBUTIONS = ("lognormal", "rrsb")
 
@@ -111,13 +114,19 @@ def make_texture(impact: Impact, path: str | Path, distribution: Distribution | 
         InvalidInput: the coverage cannot be placed, or there can be no file of this name.
         MachineFault: the disk is full.
     """
-    path = as_path(path, "--out")
+    impact = as_impact(impact, "make_texture")
+    path = writable_file(as_path(path, "--out"), "--out")
     sizes = f" distribution {distribution.kind} {distribution.median!r} {distribution.spread!r}" if distribution else ""
     # LAMMPS takes no quote in a name, so it writes to another place
-    with scratch_folder() as folder:
+    with scratch_folder(BYTES_A_GRAIN * impact.grains) as folder:
         grains = folder / "texture"
-        with lammps_session() as lmp:
-            lmp.commands_list(_placement(impact, sizes, grains))
+        try:
+            with lammps_session() as lmp:
+                lmp.commands_list(_placement(impact, sizes, grains))
+        except InvalidInput as error:
+            if str(grains) in str(error):
+                raise MachineFault(str(error)) from None
+            raise
         text = read_text(grains)
     with replace_file(path) as part:
         part.write_text(text)
