@@ -3,9 +3,11 @@
 #include "deck.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <utility>
 
 namespace {
 
