@@ -210,7 +210,7 @@ double GranSubModNormalJKRVdW::calculate_contact_radius()
         std::fill_n(gm->history + model->history_index, model->size_history, 0.0);
     kept = std::copysign(x, before);
   }
-  if (neck) use_overlap_rate(before == 0.0 || update->whichflag == 2);    // minimize moves atoms in no time
+  if (neck) use_overlap_rate(before == 0.0);
   return x * a0;
 }
 
