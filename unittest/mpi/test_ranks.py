@@ -172,3 +172,13 @@ def test_a_long_collision_crosses_two_borders_at_once(tmp_path):
         found.append(thermo(mpirun(tmp_path, "in.corner", px * py, px=str(px), py=str(py))))
     assert found[1] == found[0]
     assert float(found[0].split()[-6]) > 0.5    # dispersion ratio
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_notices_are_said_once(tmp_path, ranks):
+    """Carriers of several ranks have too few steps in contacts that pull: two lines from the first rank."""
+    said = mpirun(tmp_path, "in.notices", ranks)
+    warnings = [line for line in said.splitlines() if "WARNING: Fix dust/detach" in line]
+    assert len(warnings) == 2, said
+    assert sum("pulls" in line for line in warnings) == 1
+    assert sum("too few" in line for line in warnings) == 1
