@@ -28,8 +28,8 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 
 /* ---------------------------------------------------------------------- */
 
-FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), carrier_radius(0.0),
+FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
+    Fix(_lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), carrier_radius(0.0),
     texture_checksum(0.0), state(nullptr), attached(nullptr), orientation(nullptr), angle(nullptr),
     window_mass(nullptr), steps(0.0), began(nullptr), newcomers(true), mine{}, shedding(lmp, this, settings.emit),
     exchange_room(0)
@@ -133,8 +133,8 @@ void FixDustDetach::init()
     build();
   } else {
     bool inserts = false;
-    for (const char *style : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
-      inserts = inserts || !modify->get_fix_by_style(style).empty();
+    for (const char *name : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
+      inserts = inserts || !modify->get_fix_by_style(name).empty();
     if (!inserts)
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
