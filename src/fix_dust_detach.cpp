@@ -4,7 +4,6 @@
 
 #include "fix_dust_detach.h"
 
-#include "core/jkr.h"
 #include "dust_atoms.h"
 #include "dust_gather.h"
 
@@ -12,19 +11,15 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_wall_gran.h"
-#include "force.h"
-#include "gran_sub_mod_normal.h"
-#include "granular_model.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
-#include "pair_granular.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -105,6 +100,7 @@ void FixDustDetach::build()
   grow_arrays(atom->nmax);
   maxexchange = fixed_size() + 1 + exchange_room;
   adopt();
+  settings.save(texture);
 
   if (comm->me == 0) {
     utils::logmesg(
