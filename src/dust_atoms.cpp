@@ -12,7 +12,7 @@
 
 using namespace LAMMPS_NS;
 
-DustAtoms::DustAtoms(LAMMPS *lmp) : Pointers(lmp), before(atom->nlocal)
+DustAtoms::DustAtoms(LAMMPS *_lmp) : Pointers(_lmp), before(atom->nlocal)
 {
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
   atom->nghost = 0;    // new atoms take their places
