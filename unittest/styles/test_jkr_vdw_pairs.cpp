@@ -32,7 +32,7 @@ const std::vector<std::pair<double, double>> SIZES = {{CARRIER, 10e-6}, {10e-6, 
 // two spheres: JKR branch over x = a/a0 (Chokshi et al. 1993) with gamma = A/(18 pi z0^2)
 struct Contact {
   double r1, r2, r, modulus, gamma, fc, a0, delta_c, delta_0;
-  Contact(double r1, double r2) : r1(r1), r2(r2), r(r1 * r2 / (r1 + r2))
+  Contact(double _r1, double _r2) : r1(_r1), r2(_r2), r(r1 * r2 / (r1 + r2))
   {
     modulus = YOUNG / (2.0 * (1.0 - NU * NU));
     gamma = HAMAKER / (18.0 * M_PI * Z0 * Z0);
