@@ -169,7 +169,8 @@ TEST(JkrVdw, EnergyIsConservedWhereNothingDissipates)
 
 TEST(JkrVdw, DampingRatioAtTheEquilibrium)
 {
-  // eta = 2 zeta sqrt(k0/m)/a0 with stock viscoelastic: free oscillation decays by exp(-2 pi zeta/sqrt(1 - zeta^2)) a period
+  // eta = 2 zeta sqrt(k0/m)/a0 with stock viscoelastic: free oscillation decays by exp(-2 pi zeta/sqrt(1 - zeta^2)) a
+  // period
   const Grain g(10e-6, 0.4e-9);
   const double zeta = 0.1, k0 = 1.2 * g.modulus * g.a0, omega = std::sqrt(k0 / g.mass);
   EXPECT_NEAR(k0 / g.mass, 1.2 * g.modulus * g.a0 / g.mass, 1.0);
