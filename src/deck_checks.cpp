@@ -21,8 +21,8 @@
 
 using namespace LAMMPS_NS;
 
-// steps that a contact should have at least: at 8 m/s 50 change the ratio by 0.0003, 20 by 0.003 and 10 by 0.008. Softened
-// contacts are for beds, which cannot afford as many, and are right to about 0.01
+// steps that a contact should have at least: at 8 m/s 50 change the ratio by 0.0003, 20 by 0.003 and 10 by 0.008.
+// Softened contacts are for beds, which cannot afford as many, and are right to about 0.01
 static constexpr double ENOUGH_STEPS = 50.0, ENOUGH_SOFT_STEPS = 12.0;
 static constexpr double SOFTER = 1.05;               // by which a modulus may be too low
 static constexpr double MUCH_SOFTER = 2.0;           // in accelerations, where the modulus is not known
@@ -182,8 +182,8 @@ void DeckChecks::check_all_sizes(double radius) const
 }
 
 /* ----------------------------------------------------------------------
-   the only atom that carrier i touches; NOBODY if only walls can push it, and then one, or such that are no more than 90
-   degrees apart
+   the only atom that carrier i touches; NOBODY if only walls can push it, and then one, or such that are no more than
+   90 degrees apart
 ------------------------------------------------------------------------- */
 
 int DeckChecks::neighbour(int i) const
