@@ -378,11 +378,15 @@ void FixDustDetach::record(int i)
     const int number = coat.table->grain(d.bit);
     const Dust::Grain &grain = coat.texture.grains[number];
     const double distance = coat.radius + grain.radius, *n = d.direction, *w = d.velocity;
-    const double place[3] = {x[0] + distance * n[0], x[1] + distance * n[1], x[2] + distance * n[2]};
-    const double speed[3] = {velocity[0] + w[0], velocity[1] + w[1], velocity[2] + w[2]};
+    const double before = d.before_end / settings.stiffen_time;    // when it left, and there the carrier was
+    double place[3], speed[3];
+    for (int k = 0; k < 3; k++) {
+      place[k] = x[k] - before * velocity[k] + d.carrier_place[k] / settings.stiffen_time + distance * n[k];
+      speed[k] = velocity[k] + d.carrier_velocity[k] + w[k];
+    }
     if (settings.keep_rows)
-      rows.add({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
-                place[0], place[1], place[2], speed[0], speed[1], speed[2]});
+      rows.add({double(update->ntimestep) - std::round(before / update->dt), double(atom->tag[i]), number + 1.0,
+                d.mode + 1.0, 2.0 * grain.radius, place[0], place[1], place[2], speed[0], speed[1], speed[2]});
     if (!settings.lose_mass) continue;
     const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
     lost_mass += mass;
@@ -391,7 +395,7 @@ void FixDustDetach::record(int i)
       shedding.wait(i, {number + 1.0,
                         mass,
                         grain.radius,
-                        shedding.now(),
+                        shedding.now() - before,
                         {place[0], place[1], place[2]},
                         {speed[0], speed[1], speed[2]},
                         {spin[0], spin[1], spin[2]}});
