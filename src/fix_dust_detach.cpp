@@ -275,13 +275,21 @@ Dust::Motion FixDustDetach::motion_of(int i) const
   Dust::Motion motion = {};
   const double per_mass = settings.stiffen_acceleration / atom->rmass[i];
   for (int d = 0; d < 3; d++) motion.acceleration[d] = atom->f[i][d] * per_mass;
-  if (!settings.rotation) return motion;
+  if (!settings.rotation) return check_finite(i, motion);
   constexpr double INERTIA = 0.4;    // of a sphere, as in fix nve/sphere
   const double per_inertia = per_mass / (INERTIA * atom->radius[i] * atom->radius[i]);
   for (int d = 0; d < 3; d++) {
     motion.angular_acceleration[d] = atom->torque[i][d] * per_inertia;
     motion.spin[d] = atom->omega[i][d];
   }
+  return check_finite(i, motion);
+}
+
+const Dust::Motion &FixDustDetach::check_finite(int i, const Dust::Motion &motion) const
+{
+  if (!motion.is_finite())
+    error->one(FLERR, "Fix dust/detach {}: force, torque or spin of carrier {} is not finite at step {}", id,
+               atom->tag[i], update->ntimestep);
   return motion;
 }
 

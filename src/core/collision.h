@@ -90,7 +90,7 @@ class alignas(64) Collision {
   void begin(const Quaternion &orientation, const double *spin);
 
   /*! One time step: Eq. 2 and lift-off normal
-   *  \param motion    its spin is that of the middle of the step that ends now, as a leapfrog has it
+   *  \param motion    must be finite; its spin is that of the middle of the step that ends now, as a leapfrog has it
    *  \param attached  bits of the grains; those that leave are cleared
    *  \param work      the grains that leave are appended to its list
    *  \return          true if any left */

@@ -159,3 +159,21 @@ TEST(FixDustDetachImpacts, AngularAccelerationIsTorqueOverTheMomentOfInertia)
   EXPECT_GT(std::fabs(expected - count(without)), 0.2 * expected);    // the test tests something
   EXPECT_NEAR(deck.global(10), expected, 0.01 * expected);
 }
+
+TEST(FixDustDetachImpacts, MotionThatIsNotFiniteStopsTheRunAndNamesTheCarrier)
+{
+  for (const char *law : {"estimate", "integrate damping 0.1"})
+    for (const bool rests : {false, true})
+      for (const double wrong : {double(NAN), double(INFINITY)}) {
+        Deck deck;
+        deck.box();
+        deck.carrier(3.0e-3, 0.0, 5.0e-3, 0.0, 0.0, 0.0);
+        deck.carrier(0.0, 0.0, rests ? R - 1.0e-9 : START, 0.0, 0.0, rests ? 0.0 : -8.0);
+        deck.wall_and_motion();
+        deck("fix dust all dust/detach " + REFERENCE_DUST + " tangential " + law + "\nrun 500 post no");
+        const_cast<double *>(deck.atom("omega", 2))[0] = wrong;    // the wall's friction follows
+        const std::string error = deck.attempt("run 100 pre no post no");
+        EXPECT_NE(error.find("dust: force, torque or spin of carrier 2 is not finite at step 50"), std::string::npos)
+            << error;
+      }
+}
