@@ -181,6 +181,14 @@ void DeckChecks::check_all_sizes(double radius) const
     if (atom->mask[i] & dust->groupbit) check_size(i, radius);
 }
 
+/* ---------------------------------------------------------------------- */
+
+void DeckChecks::stop_at(int i) const
+{
+  error->one(FLERR, "Fix dust/detach {}: force, torque or spin of carrier {} is not finite at step {}", dust->id,
+             atom->tag[i], update->ntimestep);
+}
+
 /* ----------------------------------------------------------------------
    the only atom that carrier i touches; NOBODY if only walls can push it, and then one, or such that are no more than
    90 degrees apart

@@ -7,6 +7,7 @@
 
 #include "pointers.h"
 
+#include "core/motion.h"
 #include "deck_contacts.h"
 #include "deck_fixes.h"
 
@@ -35,6 +36,11 @@ class DeckChecks : protected Pointers {
   // stops if carrier i has another radius than its texture
   void check_size(int i, double radius) const;
   // the same for all carriers, where a fix changes them
+  // a force, torque or spin that is not a number stops the run
+  void check_finite(int i, const Dust::Motion &motion) const
+  {
+    if (!motion.is_finite()) stop_at(i);
+  }
   void look_at_sizes(double radius) const
   {
     if (sizes_change) check_all_sizes(radius);
@@ -95,6 +101,7 @@ class DeckChecks : protected Pointers {
     tagint tag;
     double mass, dt, force[3], next_force[3], velocity[3];
   } watched;
+  void stop_at(int i) const;
   void look_at_force(int i);
   void look_at_velocity();
   bool follows(const double *change) const;
