@@ -298,8 +298,7 @@ void FixDustDetach::collide(int i)
     record(i);
   }
   checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), coat.table->min_hold());
-  const bool grows = !collision.weak() || settings.criteria.tangential == Dust::Criteria::INTEGRATE;
-  if (grows) make_exchange_room(i);
+  if (settings.emit || collision.max_packed_size() > exchange_room) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
@@ -551,7 +550,10 @@ int FixDustDetach::fixed_size() const { return 2 + carriers.size(); }
 // twice what is needed now, so that Comm need not enlarge its buffers each time
 void FixDustDetach::make_exchange_room(int i)
 {
-  const int needed = packed_size(i) - fixed_size();
+  Dust::Packer counter;
+  shedding.pack(i, false, counter);
+  if (carriers.state[i] >= 0) collisions[carriers.state[i]].pack(counter);
+  const int needed = counter.size();
   if (needed <= exchange_room) return;
   exchange_room = 2 * needed;
   maxexchange = fixed_size() + 1 + exchange_room;

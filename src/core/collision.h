@@ -14,6 +14,7 @@
 #include "quaternion.h"
 #include "tangential_law.h"
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -121,6 +122,16 @@ class alignas(64) Collision {
   // transfer to another rank and restart. The schedule is begun anew, which changes no result
   void pack(Packer &packer) const;
   int packed_size() const;
+  /*! At least that, and told at once */
+  int max_packed_size() const
+  {
+    constexpr size_t SIZES = 16;    // of all vectors, and other single numbers
+    size_t size = SIZES + numbers_of<Course>();
+    if (impulses) size += numbers_of<ImpulseRecord::Span>() * ImpulseRecord::MAX_SPANS;
+    if (strong)
+      size += numbers_of<Strong::State>() + strong->start.size() + numbers_of<Motion>() * strong->history.kept().size();
+    return static_cast<int>(size);
+  }
   void unpack(Unpacker &unpacker);
 
  private:
@@ -145,7 +156,12 @@ class alignas(64) Collision {
     double size2, size, rotation;    // of the acceleration; at most what rotation adds on any grain
     bool may_move;
   };
-  static Strength strength_of(const GrainTable &table, const Motion &motion);
+  static Strength strength_of(const GrainTable &table, const Motion &motion)
+  {
+    const double size2 = dot(motion.acceleration, motion.acceleration), size = std::sqrt(size2);
+    const double rotation = table.max_shell() * motion.rotation_bound();
+    return {size2, size, rotation, size + rotation > table.moving_force()};
+  }
 
   void become_strong(const GrainTable &table, Workspace &work);
   void add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively);
