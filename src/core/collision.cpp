@@ -6,6 +6,7 @@
 
 #include "geometry.h"
 #include "patch_bits.h"
+#include "retrospect.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,9 +101,9 @@ Collision::Strength Collision::strength_of(const GrainTable &table, const Motion
   return s;
 }
 
-void Collision::add(const GrainTable &table, const Motion &motion, double dt)
+void Collision::add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively)
 {
-  course.activity.count_step();
+  course.activity.add(size, lively);
   course.time += dt;
   for (int d = 0; d < 3; d++) course.impulse[d] += motion.acceleration[d] * dt;
   const TangentialLaw *law = table.tangential();
@@ -115,13 +116,12 @@ void Collision::add(const GrainTable &table, const Motion &motion, double dt)
 
 void Collision::step_weak(const GrainTable &table, const Motion &motion, const Strength &strength, double dt)
 {
-  const bool first = !course.activity.has_begun();
-  add(table, motion, dt);
-  if (!first && strength.size2 <= course.peak2) return;
+  const bool lively = strength.size2 > course.peak2 || !course.activity.has_begun();
+  add(table, motion, strength.size, dt, lively);
+  if (!lively) return;
   course.peak2 = strength.size2;
   course.peak = motion;
   std::copy_n(course.angle, 3, course.peak_angle);
-  course.activity.mark_lively();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -136,11 +136,8 @@ void Collision::step_strong(const GrainTable &table, const Motion &motion, const
     s.state.lively.time = course.time;
     std::copy_n(course.impulse, 3, s.state.lively.impulse);
   }
-  add(table, motion, dt);
-  if (lively) {
-    course.activity.mark_lively();
-    std::copy_n(motion.spin, 3, s.state.lively.spin);
-  }
+  add(table, motion, strength.size, dt, lively);
+  if (lively) std::copy_n(motion.spin, 3, s.state.lively.spin);
 
   const bool rotates = strength.rotation > ROUND_OFF * strength.size;
   const Motion m = motion.in_body(s.state.now);
@@ -193,7 +190,7 @@ void Collision::lose(const GrainTable &table, const Loss &loss, const Motion &mo
     for (Mode met : {SLIDING, ROLLING})
       strong->state.count[met] += excess(table, met, loss.bit, load) > 0.0 || has_met(met, table, loss.bit);
   }
-  work.detached.push_back({loss.bit, loss.mode, {}, {}});
+  work.detached.push_back({loss.bit, loss.mode, {}, {}, 0.0, {}, {}});
   if (!work.locate) return;
   Detachment &detached = work.detached.back();
   double velocity[3];
@@ -212,10 +209,23 @@ void Collision::let_go(const GrainTable &table, const Release &release, uint64_t
   detach(release.bit, attached);
   if (table.criteria().count)
     for (Mode met : {SLIDING, ROLLING}) strong->state.count[met] += has_met(met, table, release.bit);
-  work.detached.push_back({release.bit, TANGENTIAL, {}, {}});
+  work.detached.push_back({release.bit, TANGENTIAL, {}, {}, release.before_end, {}, {}});
   if (!work.locate) return;
   course.frame.to_space(release.direction, work.detached.back().direction);
   course.frame.to_space(release.velocity, work.detached.back().velocity);
+}
+
+// where the carrier was when grains left; the impulses are along the axes of the frame by now
+void Collision::locate_in_past(std::vector<Detachment> &detached, size_t first) const
+{
+  const Retrospect carrier(*impulses);
+  for (size_t k = first; k < detached.size(); k++) {
+    Detachment &d = detached[k];
+    if (d.before_end <= 0.0) continue;
+    carrier.at(d.before_end, d.carrier_velocity, d.carrier_place);
+    course.frame.to_space(d.carrier_velocity, d.carrier_velocity);
+    course.frame.to_space(d.carrier_place, d.carrier_place);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -274,7 +284,9 @@ bool Collision::end(const GrainTable &table, const double *spin, uint64_t *attac
   past.history = &strong->history;
   work.released.clear();
   law->releases(table, past, attached, work.locate, work.released);
+  const size_t first = work.detached.size();
   for (const Release &release : work.released) let_go(table, release, attached, work);
+  if (work.locate && impulses) locate_in_past(work.detached, first);
   return !work.released.empty();
 }
 

@@ -40,6 +40,7 @@ bool may_release(const GrainTable &table, const PastCollision &past)
 
 struct Substep {
   double dt, acceleration[3];    // mean
+  double before_end;             // of the collision, in the middle
   double acceleration_after[3], spin_after[3];
 };
 
@@ -72,6 +73,11 @@ std::vector<Substep> substeps(const PastCollision &past)
     std::copy_n(found.back().acceleration_after, 3, force0);
     std::copy_n(found.back().spin_after, 3, spin0);
   }
+  double rest = 0.0;
+  for (auto step = found.rbegin(); step != found.rend(); ++step) {
+    step->before_end = rest + 0.5 * step->dt;
+    rest += step->dt;
+  }
   return found;
 }
 
@@ -92,7 +98,8 @@ class Follower {
     const GrainTable::Site &site = table.site(bit);
     const double rp = table.carrier_radius(), radius = site.shell - rp;
     const int lane = motion.grains();
-    bits[lane] = bit;
+    releases[lane] = {bit, {}, {}, 0.0};
+    attached[lane] = true;
     motion.add(site.n, site.hold, radius, rp, past.spin_before);
     if (rings) {
       constexpr double NONE[3] = {0.0, 0.0, 0.0};
@@ -108,22 +115,18 @@ class Follower {
     double load[SurfaceMotion::LANES];
     for (const Substep &step : steps) {
       motion.advance(step.acceleration, step.spin_after, step.dt);
-      if (!rings) continue;
-      for (int k = 0; k < motion.grains(); k++)
-        load[k] = motion.outward_force(k, step.acceleration_after) / table.site(bits[k]).hold;
-      ringing.advance(load, step.dt);
+      if (rings) {
+        for (int k = 0; k < motion.grains(); k++)
+          load[k] = motion.outward_force(k, step.acceleration_after) / table.site(releases[k].bit).hold;
+        ringing.advance(load, step.dt);
+      }
+      note_releases(step.before_end);
     }
     motion.release();
     ringing.ring_out();
-    for (int k = 0; k < motion.grains(); k++) {
-      if (motion.attached(k) && !(rings && !ringing.attached(k))) continue;
-      Release release = {bits[k], {}, {}};
-      for (int d = 0; d < 3; d++) {
-        release.direction[d] = motion.direction(k, d);
-        release.velocity[d] = motion.velocity(k, d);
-      }
-      released.push_back(release);
-    }
+    note_releases(0.0);
+    for (int k = 0; k < motion.grains(); k++)
+      if (!attached[k]) released.push_back(releases[k]);
     motion.clear();
     ringing.clear();
   }
@@ -136,8 +139,23 @@ class Follower {
   const bool rings;
   SurfaceMotion motion;
   NormalMotion ringing;
-  int bits[SurfaceMotion::LANES];
+  Release releases[SurfaceMotion::LANES];
+  bool attached[SurfaceMotion::LANES];
   static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
+
+  // those that have just left, as they do
+  void note_releases(double before_end)
+  {
+    for (int k = 0; k < motion.grains(); k++) {
+      if (!attached[k] || (motion.attached(k) && !(rings && !ringing.attached(k)))) continue;
+      attached[k] = false;
+      releases[k].before_end = before_end;
+      for (int d = 0; d < 3; d++) {
+        releases[k].direction[d] = motion.direction(k, d);
+        releases[k].velocity[d] = motion.velocity(k, d);
+      }
+    }
+  }
 };
 
 /* ---------------------------------------------------------------------- */

@@ -31,6 +31,7 @@ struct Release {
   int bit;
   double direction[3];    //!< n, along the same axes
   double velocity[3];     //!< relative to the carrier's centre
+  double before_end;      //!< when it left: so long before the end of the collision
 };
 
 /*! A law of tangential lift-off: which grains leave, asked once at the end of a collision.

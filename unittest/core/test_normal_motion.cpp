@@ -27,8 +27,8 @@ const double FREQUENCY = std::sqrt(1.2 * MODULUS * A0 / MASS);    // of small sw
 // work along the branch to its end, in F_c delta_c, from y = sqrt(a/a0)
 double work_from(double y)
 {
-  const auto w = [](double y) {
-    return 4.0 * ROOT_6 * (0.8 * std::pow(y, 10) - 4.0 / 3.0 * std::pow(y, 7) + std::pow(y, 4) / 3.0);
+  const auto w = [](double x) {
+    return 4.0 * ROOT_6 * (0.8 * std::pow(x, 10) - 4.0 / 3.0 * std::pow(x, 7) + std::pow(x, 4) / 3.0);
   };
   return w(std::pow(6.0, -1.0 / 3.0)) - w(y);
 }
@@ -185,4 +185,15 @@ TEST(NormalMotion, SameAsAReferenceInTinySteps)
   EXPECT_GT(stay, 150);
   EXPECT_LT(close, 60);
   EXPECT_LT(apart, 10);    // of 768
+}
+
+TEST(NormalMotion, WhatIsNotANumberTakesNoEndlessSteps)
+{
+  for (double wrong : {double(NAN), double(INFINITY), -double(INFINITY), -1.0e300, -1.0e30}) {
+    Alone grain(0.2);
+    grain.advance(wrong, 1.0e-6);
+    grain.set(0.0);
+    grain.motion.ring_out();
+    EXPECT_EQ(grain.motion.grains(), 1);
+  }
 }
