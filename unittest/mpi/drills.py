@@ -29,7 +29,7 @@ GRAIN = math.pi / 6.0 * 100e-6**3 * 2700.0
 SOFT = "hertz/material 210e6 0.7 0.3 tangential mindlin NULL 0 0.05 damping coeff_restitution/limited"
 COLUMNS = "id type mass x y z vx vy vz f_dust[1] f_dust[2]"
 ROWS = " ".join(f"f_dust[{n}]" for n in (1, 2, 3, 5, 9, 10, 11))
-MASS, MOMENTUM = 1e-12, 1e-11    # relative: sums of some thousand terms
+MASS, MOMENTUM = 1e-12, 1e-11  # relative: sums of some thousand terms
 
 Vector = tuple[float, ...]
 # by step, carrier and grain: step in which it was written, which is the next one where a run starts, mass and velocity
@@ -125,7 +125,7 @@ class Command:
 
     kind: str
     lines: list[str]
-    goes: Callable[[Atom], bool] | None = None    # which atoms are deleted
+    goes: Callable[[Atom], bool] | None = None  # which atoms are deleted
     shift: Vector = ()
     velocity: tuple[float | None, ...] = ()
 
@@ -223,10 +223,10 @@ class Drill:
         check, often = self.draw.choice(("yes", "no")), self.draw.choice((1, 7, 50))
         self.neighbour = f"neigh_modify every {often} delay 0 check {check} one 10000 page 200000"
         self.act = self.states = 0
-        self.state: State | None = None    # the last one in the books
-        self.grains_at_first = 0.0    # of a carrier
-        self.taken = 0.0    # grains that were on carriers that have been deleted
-        self.rows: Rows = {}    # that belong to the play; `entered` are in the books
+        self.state: State | None = None  # the last one in the books
+        self.grains_at_first = 0.0  # of a carrier
+        self.taken = 0.0  # grains that were on carriers that have been deleted
+        self.rows: Rows = {}  # that belong to the play; `entered` are in the books
         self.entered: set[tuple[float, float, float]] = set()
 
     def play(self, acts: int) -> None:
@@ -234,7 +234,7 @@ class Drill:
         for self.act in range(acts):
             script, middle = self.play_act(script, self.act + 1 == acts)
             script += [*self.styles(self.act + 1), f"timestep {self.draw.choice((8e-8, 1e-7))}"]
-            if middle and self.draw.random() < 0.5:    # while grains wait
+            if middle and self.draw.random() < 0.5:  # while grains wait
                 script += ["balance 1.0 shift x 5 1.01", "displace_atoms all move 3e-4 -2e-4 1e-4 units box"]
 
     def opening(self) -> list[str]:
@@ -363,7 +363,7 @@ class Drill:
             gone = [a for a in before.atoms if command.goes(a)]
             self.taken += sum(a.attached for a in gone)
             if after.totals[0] - before.totals[0] == self.grains_at_first * len(before.unknown):
-                self.taken += self.grains_at_first * sum(a in before.unknown for a in gone)    # had got them before
+                self.taken += self.grains_at_first * sum(a in before.unknown for a in gone)  # had got them before
             before = State(before.step, before.totals, [a for a in before.atoms if not command.goes(a)])
         if command.velocity:
             for a in after.atoms:
@@ -376,7 +376,7 @@ class Drill:
                     way = a.x[d] - places[a.id][d] - command.shift[d]
                     way = math.remainder(way, 2.0 * self.half) if border == "p" else way
                     close(way, 0.0, 1e-12, f"way of atom {a.id}")
-        if before.new and not after.new:    # LAMMPS sets up its styles for some commands as it does for a run
+        if before.new and not after.new:  # LAMMPS sets up its styles for some commands as it does for a run
             close(after.mass, before.mass + self.gained(before)[0], MASS * before.mass, "mass")
             return
         what = (lambda a: (a.kind, a.mass, a.attached)) if command.velocity else (lambda a: a)
