@@ -312,7 +312,9 @@ class Drill:
     def run(self, script: list[str], ranks: int) -> str:
         deck = self.folder / f"in.act{self.act}"
         deck.write_text("\n".join([*script[:1], f"# {ranks} ranks", *script[1:]]) + "\n")
-        command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-log", "none"]
+        # ranks that wait let others work: a machine may have fewer cores, or much to do
+        command = ["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-np", str(ranks)]
+        command += [str(BUILD / "bin/lmp-dust"), "-log", "none"]
         command += ["-in", deck.name]
         environment = os.environ | AS_ROOT
         done = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=600)
