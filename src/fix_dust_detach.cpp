@@ -288,8 +288,6 @@ const Dust::Motion &FixDustDetach::check_finite(int i, const Dust::Motion &motio
   return motion;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixDustDetach::collide(int i)
 {
   if (checks.holds(atom->mask[i])) return;
@@ -313,8 +311,6 @@ DeckChecks::Course FixDustDetach::course_of(const Dust::Collision &collision) co
   return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold()};
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
   checks.check_size(i, coat.radius);
@@ -322,8 +318,6 @@ void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
   collisions[carriers.state[i]].begin(carriers.standing(i), motion.spin);
   make_exchange_room(i);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixDustDetach::finish_collision(int i, int next)
 {
@@ -412,8 +406,6 @@ void FixDustDetach::record(int i)
   rows.open();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixDustDetach::close_window()
 {
   carriers.close_window();
@@ -440,15 +432,11 @@ template <typename Question> double FixDustDetach::sum_under_way(Question questi
   return sum;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixDustDetach::compute_scalar()
 {
   const DetachTotals t = mine.sum(world);
   return t.initial > 0.0 ? t.weight / t.initial : 0.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixDustDetach::compute_vector(int n)
 {
@@ -486,8 +474,6 @@ double FixDustDetach::attached_grains() const
   MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   return sum;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixDustDetach::memory_usage()
 {
