@@ -78,7 +78,7 @@ double DustShedding::emit_grains(const std::function<bool(int)> &ready)
   for (const Candidate &c : all) spheres.push_back({{c.x[0], c.x[1], c.x[2]}, c.radius, tagint(c.carrier)});
   const std::vector<int> room = DustRoom(lmp, std::move(spheres)).find();
   const double back = send_back(all, room);
-  if (back < double(all.size())) create(all, room);
+  if (std::count(room.begin(), room.end(), 1)) create(all, room);
   return back;
 }
 

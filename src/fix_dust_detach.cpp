@@ -87,8 +87,6 @@ void FixDustDetach::build()
         coat.table->grains(), coat.table->mean_mass(), coat.table->min_hold(), coat.table->max_hold());
 }
 
-/* ---------------------------------------------------------------------- */
-
 int FixDustDetach::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE; }
 
 /* ---------------------------------------------------------------------- */
@@ -117,6 +115,7 @@ void FixDustDetach::init()
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
   weigh();
+  share_exchange_room();    // commands between runs move atoms, too
 }
 
 /* ----------------------------------------------------------------------
@@ -138,8 +137,6 @@ void FixDustDetach::setup(int /*vflag*/)
   }
   if (settings.lose_mass) tell_ghosts();
 }
-
-void FixDustDetach::setup_post_neighbor() { post_neighbor(); }
 
 /* ----------------------------------------------------------------------
    atoms have come, gone or changed places
@@ -616,10 +613,6 @@ int FixDustDetach::pack_with_size(int i, bool for_file, double *buf) const
   return to.size() + 1;
 }
 
-int FixDustDetach::pack_exchange(int i, double *buf) { return pack_with_size(i, false, buf); }
-
-int FixDustDetach::pack_restart(int i, double *buf) { return pack_with_size(i, true, buf); }
-
 int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 {
   unpack(nlocal, buf + 1);
@@ -671,8 +664,6 @@ void FixDustDetach::unpack_restart(int i, int nth)
   for (int k = 0; k < nth; k++) buf += static_cast<int>(buf[0]);
   unpack(i, buf + 1);
 }
-
-int FixDustDetach::size_restart(int i) { return packed_size(i) + 1; }
 
 int FixDustDetach::maxsize_restart()
 {
