@@ -160,7 +160,7 @@ void DeckChecks::settle_stiffen()
           "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and fix wall/gran, not for those "
           "of {}",
           dust->id, style);
-  if (first) settings.stiffen_by(first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
+  settings.stiffen_by(first && first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
 }
 
 /* ---------------------------------------------------------------------- */
