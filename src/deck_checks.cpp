@@ -46,7 +46,7 @@ void DeckChecks::before_run()
   fixes.check_order();
   fixes.before_run(settings.rotation);
   noticed = told = 0;
-  watched.stage = Watched::NONE;
+  watch_none();
   sizes_change = false;
   for (const Fix *fix : modify->get_fix_list()) sizes_change = sizes_change || fix->diam_flag;
   look_at_contacts();
@@ -160,7 +160,7 @@ void DeckChecks::settle_stiffen()
           "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and fix wall/gran, not for those "
           "of {}",
           dust->id, style);
-  if (first) settings.stiffen_by(first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
+  settings.stiffen_by(first && first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -312,6 +312,8 @@ bool DeckChecks::bounced(int i, double steps, const double *impulse) const
    if the integrator stands before this fix. Atoms do not change places between the force and the step that follows.
 ------------------------------------------------------------------------- */
 
+void DeckChecks::watch_none() { watched.stage = (noticed & bit(NOT_FOLLOWED)) ? Watched::NEVER : Watched::NONE; }
+
 void DeckChecks::look_at_force(int i)
 {
   const tagint tag = atom->tag ? atom->tag[i] : 0;
@@ -339,7 +341,7 @@ void DeckChecks::look_at_velocity()
     return;
   }
   const bool complete = same && watched.stage == Watched::FORCES;
-  watched.stage = Watched::NONE;
+  watch_none();
   if (!complete || follows(atom->v[i])) return;
   const std::string suspects = fixes.suspects(i);
   notice(NOT_FOLLOWED,
@@ -369,13 +371,14 @@ bool DeckChecks::follows(const double *velocity) const
 void DeckChecks::notice(Notice what, const std::string &line)
 {
   noticed |= bit(what);
+  watch_none();
   lines[what] = line;
   if (comm->nprocs == 1) tell();
 }
 
 void DeckChecks::tell()
 {
-  watched.stage = Watched::NONE;
+  watch_none();
   if (told == bit(NNOTICES) - 1) return;
   unsigned all = noticed & ~told;
   MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UNSIGNED, MPI_BOR, world);

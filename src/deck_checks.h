@@ -61,7 +61,7 @@ class DeckChecks : protected Pointers {
   // over two strong steps
   void watch(int i, double acceleration2, double min_hold)
   {
-    if (!(noticed & bit(NOT_FOLLOWED)) && acceleration2 > min_hold * min_hold) look_at_force(i);
+    if (watched.wants(i) && acceleration2 > min_hold * min_hold) look_at_force(i);
   }
   void step_begins()
   {
@@ -96,12 +96,15 @@ class DeckChecks : protected Pointers {
   void notice(Notice, const std::string &);
 
   struct Watched {
-    enum { NONE, FORCE, VELOCITY, FORCES } stage = NONE;    // what is known
+    enum { NONE, FORCE, VELOCITY, FORCES, NEVER } stage = NONE;    // what is known
     int i;
     tagint tag;
     double mass, dt, force[3], next_force[3], velocity[3];
+
+    bool wants(int carrier) const { return stage == NONE || (stage == VELOCITY && i == carrier); }
   } watched;
   void stop_at(int i) const;
+  void watch_none();
   void look_at_force(int i);
   void look_at_velocity();
   bool follows(const double *change) const;
