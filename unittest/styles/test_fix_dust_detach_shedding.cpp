@@ -599,7 +599,9 @@ TEST(FixDustDetachShedding, IDsExistOnce)
          "1.5e-3 dens 7700 7700 vol 0.05 50 vel 0 0 0 0 -8 id " +
          id);
     const std::string error = deck.attempt("run 6000 post no");
-    if (error.empty()) EXPECT_GT(atoms(deck).size(), 100u);    // looks for IDs that exist twice
+    if (error.empty()) {
+      EXPECT_GT(atoms(deck).size(), 100u);    // looks for IDs that exist twice
+    }
     return error;
   };
   EXPECT_EQ(run("max"), "");
