@@ -91,11 +91,11 @@ class alignas(64) Collision {
   void begin(const Quaternion &orientation, const double *spin);
 
   /*! One time step: Eq. 2 and lift-off normal
-   *  \param motion    must be finite; its spin is that of the middle of the step that ends now, as a leapfrog has it
+   *  \param middle    must be finite; its spin is that of the middle of the step that ends now, as a leapfrog has it
    *  \param attached  bits of the grains; those that leave are cleared
    *  \param work      the grains that leave are appended to its list
    *  \return          true if any left */
-  bool step(const GrainTable &table, const Motion &motion, double dt, uint64_t *attached, Workspace &work);
+  bool step(const GrainTable &table, const Motion &middle, double dt, uint64_t *attached, Workspace &work);
 
   /*! Whether it has come to rest though the contact lasts */
   bool at_rest() const { return course.activity.at_rest(weak()); }
