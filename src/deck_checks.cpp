@@ -75,31 +75,38 @@ void DeckChecks::check_command() const
 }
 
 /* ----------------------------------------------------------------------
-   of those in the group and of those that are to be inserted
+   by type: carriers are those in the group and those that are to be inserted. Grains of this fix are nothing: they come
+   and go with the dust, and what they do to carriers is small
 ------------------------------------------------------------------------- */
 
-std::vector<int> DeckChecks::types_of_carriers() const
+std::vector<Meets> DeckChecks::what_atoms_are() const
 {
+  constexpr int ATOM = static_cast<int>(Meets::ATOM), CARRIER = static_cast<int>(Meets::CARRIER);
   std::vector<int> types(atom->ntypes + 1, 0);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & dust->groupbit) types[atom->type[i]] = 1;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool carrier = atom->mask[i] & dust->groupbit;
+    types[atom->type[i]] = std::max(types[atom->type[i]], carrier ? CARRIER : ATOM);
+  }
   MPI_Allreduce(MPI_IN_PLACE, types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
   for (const char *style : {"^pour", "^deposit"})
     for (Fix *fix : modify->get_fix_by_style(style))
       for (int t = 1; t <= atom->ntypes; t++) {
         int type = t;    // in return for which it says the largest radius
         const auto *radius = static_cast<const double *>(fix->extract("radius", type));
-        if (radius && *radius > 0.0) types[t] = 1;
+        if (radius && *radius > 0.0) types[t] = CARRIER;
       }
   types[settings.emit] = 0;
-  return types;
+  std::vector<Meets> atoms;
+  atoms.reserve(types.size());
+  for (int type : types) atoms.push_back(static_cast<Meets>(type));
+  return atoms;
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DeckChecks::look_at_contacts()
 {
-  const DeckContacts deck(lmp, types_of_carriers(), [this](const Fix *fix) { return fixes.acts_on_carriers(fix); });
+  const DeckContacts deck(lmp, what_atoms_are(), [this](const Fix *fix) { return fixes.acts_on_carriers(fix); });
   contacts = deck.all;
   unread = fixes.unread_contacts();
   for (const std::string &style : deck.other_styles) unread.push_back("pair_style " + style);
@@ -319,7 +326,7 @@ void DeckChecks::look_at_force(int i)
   const tagint tag = atom->tag ? atom->tag[i] : 0;
   if (watched.stage == Watched::NONE) {
     watched.stage = Watched::FORCE;
-    watched.i = i;
+    watched.i = watched.after = i;
     watched.tag = tag;
     watched.mass = atom->rmass[i];
     watched.dt = update->dt;

@@ -65,7 +65,10 @@ class DeckChecks : protected Pointers {
   }
   void step_begins()
   {
-    if (watched.stage != Watched::NONE) look_at_velocity();
+    if (watched.stage != Watched::NONE)
+      look_at_velocity();
+    else
+      watched.after = -1;
   }
 
   // says what any rank has noticed; on all ranks
@@ -101,7 +104,9 @@ class DeckChecks : protected Pointers {
     tagint tag;
     double mass, dt, force[3], next_force[3], velocity[3];
 
-    bool wants(int carrier) const { return stage == NONE || (stage == VELOCITY && i == carrier); }
+    int after = -1;    // the last one: then the next in the list has its turn
+
+    bool wants(int carrier) const { return stage == NONE ? carrier > after : stage == VELOCITY && i == carrier; }
   } watched;
   void stop_at(int i) const;
   void watch_none();
@@ -112,7 +117,7 @@ class DeckChecks : protected Pointers {
   void check_command() const;
   void look_at_contacts();
   void settle_stiffen();
-  std::vector<int> types_of_carriers() const;
+  std::vector<Meets> what_atoms_are() const;
   enum { NOBODY = -1, SEVERAL = -2 };
   int neighbour(int i) const;
   bool pulled_by_one(int i) const;

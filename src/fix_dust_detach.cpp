@@ -494,6 +494,8 @@ void FixDustDetach::post_run()
   }
   if (settings.lose_mass) tell_ghosts();
   share_exchange_room();
+  for (int i = 0; i < atom->nlocal; i++)    // of collisions that are not over, too
+    if (carriers.state[i] >= 0) checks.collision_over(i, 0.0, course_of(collisions[carriers.state[i]]));
   checks.tell();
 }
 
