@@ -5,8 +5,8 @@
 #ifndef LMP_DUST_DETACH_COLUMNS_H
 #define LMP_DUST_DETACH_COLUMNS_H
 
-/* The numbers that fix dust/detach puts out, by name, counted from 0; a deck counts them from 1. The tables of
-   doc/fix_dust_detach.rst say what they are. A test reads this file: one name a line, the number of them last. */
+/* The numbers that fix dust/detach and compute dust/grain put out, by name, counted from 0; a deck counts them from 1.
+   Tables in doc/ say what they are. A test reads this file: one name a line, the number of them last. */
 
 namespace LAMMPS_NS {
 
@@ -39,6 +39,11 @@ enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, SIZE };
 // columns of the local array
 namespace DetachRow {
 enum { STEP, CARRIER, GRAIN, MODE, DIAMETER, X, Y, Z, VX, VY, VZ, SIZE };
+}
+
+// columns of the local array of compute dust/grain
+namespace GrainRow {
+enum { CARRIER, GRAIN, DIAMETER, X, Y, Z, LOST, SIZE };
 }
 
 }    // namespace LAMMPS_NS

@@ -47,6 +47,10 @@ class FixDustDetach : public Fix {
   double compute_vector(int) override;
   double memory_usage() override;
 
+  // for those who draw carrier i: its texture, which is false as long as there is none, and what is left of it
+  const DustCoat &coat_of(int /*i*/) const { return coat; }
+  const CarrierData &all_carriers() const { return carriers; }
+
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
   void set_arrays(int) override;

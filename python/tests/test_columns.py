@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from dustdetach import Impact, run
-from dustdetach.columns import DetachAtom, DetachRow, DetachVector, Mode
+from dustdetach.columns import DetachAtom, DetachRow, DetachVector, GrainRow, Mode
 
 SOURCES = Path(__file__).parents[2] / "src"
 
@@ -18,7 +18,7 @@ def enums_of(header):
     return {name: [word.strip() for word in words.split(",") if word.strip()][:-1] for name, words in enums}
 
 
-@pytest.mark.parametrize("enum", [DetachVector, DetachAtom, DetachRow])
+@pytest.mark.parametrize("enum", [DetachVector, DetachAtom, DetachRow, GrainRow])
 def test_python_and_the_fix_name_the_same_columns(enum):
     assert [column.name for column in enum] == enums_of(SOURCES / "detach_columns.h")[enum.__name__]
     assert list(enum) == list(range(len(enum)))

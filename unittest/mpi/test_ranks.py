@@ -61,6 +61,23 @@ def test_same_on_any_number_of_ranks(one_rank, tmp_path, ranks, newton):
     assert events == one_rank[2]
 
 
+def grains_at(folder: Path, ranks: int, step: str) -> list[str]:
+    """Rows of compute dust/grain at a step, sorted."""
+    run(folder, ranks, steps="3000")
+    _, _, frame = (folder / "ranks.txt.grains").read_text().partition(f"ITEM: TIMESTEP\n{step}\n")
+    return sorted(line for line in frame.split("ITEM: TIMESTEP")[0].splitlines() if re.match(r"\d+ \d+ \d", line))
+
+
+def test_every_attached_grain_is_where_it_is_on_any_number_of_ranks(tmp_path):
+    """While carriers slide over borders between ranks, and grains have left some."""
+    for ranks in (1, 2, 4):
+        (tmp_path / str(ranks)).mkdir()
+    rows = grains_at(tmp_path / "1", 1, "3000")
+    assert 10000 < len(rows) < 8 * 4500
+    assert rows == grains_at(tmp_path / "2", 2, "3000")
+    assert rows == grains_at(tmp_path / "4", 4, "3000")
+
+
 @pytest.fixture(scope="module")
 def one_rank_restarted(tmp_path_factory):
     folder = tmp_path_factory.mktemp("restarted")

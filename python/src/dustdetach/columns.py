@@ -1,6 +1,7 @@
-"""The columns of every output array of ``fix dust/detach``, counted from 0 as LAMMPS' library interface does.
+"""The columns of every output array of ``fix dust/detach`` and ``compute dust/grain``, by name.
 
-They have the names of ``src/detach_columns.h``; a test holds both against each other.
+Counted from 0, as LAMMPS' library interface does. The names are those of ``src/detach_columns.h``; a test holds both
+against each other.
 """
 
 from __future__ import annotations
@@ -54,6 +55,19 @@ class DetachRow(IntEnum):
     VX = 8
     VY = 9
     VZ = 10
+
+
+@unique
+class GrainRow(IntEnum):
+    """The local array of ``compute dust/grain``: a row for each grain that is still attached."""
+
+    CARRIER = 0
+    GRAIN = 1
+    DIAMETER = 2
+    X = 3
+    Y = 4
+    Z = 5
+    LOST = 6
 
 
 @unique
