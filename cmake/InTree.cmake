@@ -13,8 +13,8 @@ set(options -D CMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} -D BUILD_SHARED_LIBS=ON -D B
             -D FFT=FFTW3 -D WITH_JPEG=ON -D WITH_PNG=ON -D WITH_GZIP=OFF -D WITH_FFMPEG=OFF
             -D CMAKE_EXPORT_COMPILE_COMMANDS=ON -D LAMMPS_SIZES=${LAMMPS_SIZES} -D LAMMPS_MACHINE=dust
             -D CMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -D Python_EXECUTABLE=/usr/bin/python3)
-foreach(package GRANULAR KSPACE PLUGIN GRAPHICS)
-  if(IS_DIRECTORY "${LAMMPS_SOURCE_DIR}/src/${package}")    # GRAPHICS is part of the core before 4Jul2026
+foreach(package GRANULAR GRANSURF KSPACE PLUGIN GRAPHICS)
+  if(IS_DIRECTORY "${LAMMPS_SOURCE_DIR}/src/${package}")    # GRANSURF and GRAPHICS came with 4Jul2026
     list(APPEND options -D PKG_${package}=ON)
   endif()
 endforeach()

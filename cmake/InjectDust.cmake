@@ -16,5 +16,8 @@ function(add_dust_to_lammps)
   # our warnings are about our files, not about the headers of LAMMPS that they include
   set_property(SOURCE ${DUST_STYLE_SOURCES} APPEND PROPERTY
                COMPILE_OPTIONS "-isystem${LAMMPS_SOURCE_DIR}" "-isystem${LAMMPS_SOURCE_DIR}/GRANULAR")
+  if(PKG_GRANSURF)
+    set_property(SOURCE ${DUST_STYLE_SOURCES} APPEND PROPERTY COMPILE_OPTIONS "-isystem${LAMMPS_SOURCE_DIR}/GRANSURF")
+  endif()
 endfunction()
 cmake_language(DEFER CALL add_dust_to_lammps)

@@ -44,16 +44,30 @@ endfunction()
 # The user's granular sources with a table of sub-models that also lists ours. GRANULAR/MDR comes along because
 # it looks for the pair and wall styles by class.
 set(granular_dir "${LAMMPS_SOURCE_DIR}/src/GRANULAR")
+set(granular_pairs pair_granular)
 set(granular_fixes fix_wall_gran fix_wall_gran_region fix_granular_mdr)
 file(GLOB granular CONFIGURE_DEPENDS "${granular_dir}/gran_sub_mod*.cpp")
-foreach(name granular_model pair_granular ${granular_fixes})
+foreach(name granular_model ${granular_pairs} ${granular_fixes})
   list(APPEND granular "${granular_dir}/${name}.cpp")
 endforeach()
 file(GLOB sub_models CONFIGURE_DEPENDS "${granular_dir}/gran_sub_mod_*.h")
+
+# surfaces of triangles (STL files), since 4Jul2026: what they use beyond this is in LAMMPS' core, so that the host
+# needs no GRANSURF
+set(surface_dir "${LAMMPS_SOURCE_DIR}/src/GRANSURF")
+if(IS_DIRECTORY "${surface_dir}")
+  foreach(name surf_extra fix_surface pair_surf_granular fix_surface_global fix_surface_local)
+    list(APPEND granular "${surface_dir}/${name}.cpp")
+  endforeach()
+  list(APPEND granular_pairs pair_surf_granular)
+  list(APPEND granular_fixes fix_surface_global fix_surface_local)
+  target_include_directories(lammps_headers SYSTEM INTERFACE "${surface_dir}")
+endif()
+list(TRANSFORM granular_pairs APPEND .h)
 list(TRANSFORM granular_fixes APPEND .h)
 
 write_includes(style_gran_sub_mod.h ${sub_models} ${DUST_gran_sub_mod_HEADERS})
-write_includes(dust_style_pair.h pair_granular.h)
+write_includes(dust_style_pair.h ${granular_pairs})
 write_includes(dust_style_fix.h ${granular_fixes} ${DUST_fix_HEADERS})
 write_includes(dust_style_compute.h ${DUST_compute_HEADERS})
 write_includes(dust_style_command.h ${DUST_command_HEADERS})

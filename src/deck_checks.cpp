@@ -159,14 +159,11 @@ void DeckChecks::settle_stiffen()
           "{:.4g} times as stiffen says: inertia is too large",
           dust->id, contact.where, modulus / contact.stiffness, settings.stiffen);
   }
-  // surfaces have granular models that cannot be read
-  for (const std::string &style : unread)
-    if (!utils::strmatch(style, "surf"))
-      error->all(
-          FLERR,
-          "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and fix wall/gran, not for those "
-          "of {}",
-          dust->id, style);
+  if (!unread.empty())
+    error->all(FLERR,
+               "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and surf/granular, fix wall/gran "
+               "and fix surface/global, not for those of {}",
+               dust->id, unread[0]);
   settings.stiffen_by(first && first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
 }
 

@@ -5,8 +5,10 @@
 #include "deck_contacts.h"
 
 #include "core/jkr.h"
+#include "surface_contacts.h"
 
 #include "atom.h"
+#include "error.h"
 #include "fix_wall_gran.h"
 #include "force.h"
 #include "gran_sub_mod_damping.h"
@@ -128,16 +130,43 @@ DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<Meets> &types,
     }
   }
 
-  for (Fix *fix : modify->get_fix_list())
+  for (Fix *fix : modify->get_fix_list()) {
     if (const auto *wall = dynamic_cast<FixWallGran *>(fix))
       if (wall->model && acts(fix)) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, true);
+    look_at_surface(fix, acts);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   what fix surface/global of 4Jul2026 does wrong is refused: models beyond the first have their histories in each
+   other's place; fix_modify move takes points for triangles and one velocity for another
+------------------------------------------------------------------------- */
+
+void DeckContacts::look_at_surface(const Fix *fix, const std::function<bool(const Fix *)> &acts)
+{
+  const SurfaceContacts surface(fix);
+  if (surface.models.empty()) return;
+  if (surface.models.size() > 1)
+    error->all(FLERR, "Fix {} (surface/global) has {} models, whose contact histories LAMMPS mixes up: use a fix each",
+               fix->id, surface.models.size());
+  constexpr int MOVES_WRONG = 20260704;
+  if (surface.moves && lmp->num_ver <= MOVES_WRONG)
+    error->all(
+        FLERR,
+        "Fix {} (surface/global) is moved by fix_modify, which LAMMPS 4 Jul 2026 does wrong: use fix surface/local "
+        "with pair_style surf/granular, and fix move",
+        fix->id);
+  if (acts(fix)) all.emplace_back(std::string("fix ") + fix->id, surface.models[0], false, true);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std::vector<Meets> &types)
 {
-  if (utils::strmatch(style, "^granular")) return look_at_pairs(dynamic_cast<PairGranular *>(pair), types);
+  // surf/granular is one, between carriers and the triangles or lines of a fix surface/local
+  const bool surfaces = utils::strmatch(style, "^surf/granular");
+  if (surfaces || utils::strmatch(style, "^granular"))
+    return look_at_pairs(dynamic_cast<PairGranular *>(pair), types, surfaces);
   if (utils::strmatch(style, "^zero")) return;
   bool acts = false;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -146,10 +175,10 @@ void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std
   }
   if (!acts) return;
   other_styles.push_back(style);
-  if (!utils::strmatch(style, "^gran/") && !utils::strmatch(style, "^surf/gran")) far_styles.push_back(style);
+  if (!utils::strmatch(style, "^gran/")) far_styles.push_back(style);
 }
 
-void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &types)
+void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &types, bool surfaces)
 {
   if (!pair || !pair->setflag || !pair->types_indices) return;
   for (int t = 1; t <= atom->ntypes; t++)
@@ -158,6 +187,6 @@ void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &t
       const bool given = pair->setflag[t][u];
       if (!meet(types[t], types[u]) || !(given || pair == force->pair)) continue;
       all.emplace_back(fmt::format("pair_coeff {} {}", t, u), pair->models_list[pair->types_indices[t][u]], !given,
-                       false);
+                       surfaces);
     }
 }

@@ -47,8 +47,9 @@ class DeckContacts : protected Pointers {
   std::vector<std::string> other_styles, far_styles;
 
  private:
+  void look_at_surface(const class Fix *, const std::function<bool(const class Fix *)> &acts);
   void look_at_style(class Pair *, const std::string &style, const std::vector<Meets> &types);
-  void look_at_pairs(class PairGranular *, const std::vector<Meets> &types);
+  void look_at_pairs(class PairGranular *, const std::vector<Meets> &types, bool surfaces);
 };
 
 }    // namespace LAMMPS_NS

@@ -20,7 +20,7 @@ namespace {
 
 bool is_granular_wall(const Fix *fix)
 {
-  return utils::strmatch(fix->style, "^wall/gran") || utils::strmatch(fix->style, "^surface/");
+  return utils::strmatch(fix->style, "^wall/gran") || utils::strmatch(fix->style, "^surface/global");
 }
 
 // turns carriers back by their positions and velocities
@@ -217,7 +217,7 @@ std::vector<std::string> DeckFixes::unread_contacts() const
 {
   std::vector<std::string> list;
   for (const Fix *other : modify->get_fix_list())
-    if (is_contact(other) && !utils::strmatch(other->style, "^wall/gran"))
+    if (is_contact(other) && !is_granular_wall(other))
       list.push_back(fmt::format("fix {} ({})", other->id, other->style));
   return list;
 }

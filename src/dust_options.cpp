@@ -281,6 +281,10 @@ double DustOptions::carrier_radius(int igroup) const
   double extremes[2] = {0.0, 0.0};    // of radius and 1/radius: absent carriers change neither
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & group->bitmask[igroup])) continue;
+    if ((atom->tri && atom->tri[i] >= 0) || (atom->line && atom->line[i] >= 0))
+      error->one(FLERR,
+                 "{} group {} has triangles or lines, such as atom {}, which are no carriers: use a group without",
+                 command, group->names[igroup], atom->tag[i]);
     const double radius = atom->radius[i];
     if (!(radius > 0.0))
       error->one(FLERR, "{} carrier {} has radius {}: it must be above 0", command, atom->tag[i], radius);

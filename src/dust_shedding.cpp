@@ -43,6 +43,11 @@ void DustShedding::check_deck() const
   bool after = false;
   for (const auto &other : modify->get_fix_list()) {
     if (other == fix) after = true;
+    if (utils::strmatch(other->style, "^surface/"))
+      error->all(FLERR,
+                 "Fix dust/detach {} emit {} does not know the surfaces of fix {} ({}): use emit none, or fix "
+                 "wall/gran",
+                 fix->id, emit, other->id, other->style);
     if (after && utils::strmatch(other->style, "^NEIGH_HISTORY"))
       error->all(FLERR, "The pair_style command must stand before fix {} (dust/detach) with emit", fix->id);
   }

@@ -144,15 +144,15 @@ extern "C" __attribute__((visibility("default"))) void dust_register_styles(void
   auto *lmp = (LAMMPS *)ptr;
   Registry registry(lmp, handle, (lammpsplugin_regfunc)regfunc);
 
-  // with KIND_CLASS defined, a style header holds its macro alone
+  // with KIND_CLASS defined, a style header holds its macro alone; not all of LAMMPS' end it with a semicolon
 
 #define PAIR_CLASS
-#define PairStyle(key, Class) registry.add("pair", #key, create<Class>, lmp->force->pair_map)
+#define PairStyle(key, Class) registry.add("pair", #key, create<Class>, lmp->force->pair_map);
 #include "dust_style_pair.h"
 #undef PAIR_CLASS
 
 #define FIX_CLASS
-#define FixStyle(key, Class) registry.add("fix", #key, create_with_args<Class>, lmp->modify->fix_map)
+#define FixStyle(key, Class) registry.add("fix", #key, create_with_args<Class>, lmp->modify->fix_map);
 #include "dust_style_fix.h"
 #undef FIX_CLASS
 

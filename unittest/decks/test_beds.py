@@ -175,3 +175,36 @@ def test_wrong_values_are_named_in_one_line(tmp_path, deck, variable, value):
     said = [line for line in done.stdout.splitlines() if line.startswith(f"{variable} {value} must")]
     assert len(said) == 1, done.stdout
     assert "ERROR" not in done.stdout
+
+
+def shares(text: str) -> list[float]:
+    return [float(share) for share in re.findall(r"(0\.\d{4}) (?:came off on|on the|at the)", text)]
+
+
+SOURCE = Path(re.findall(r"^LAMMPS_SOURCE_DIR:PATH=(.*)", (BUILD / "CMakeCache.txt").read_text(), re.M)[0])
+needs_surfaces = pytest.mark.skipif(
+    not (SOURCE / "src/GRANSURF").is_dir(), reason="surfaces of triangles are there since 4Jul2026"
+)
+
+
+@needs_surfaces
+def test_dust_comes_off_where_the_chute_turns(tmp_path):
+    """Sliding takes little; the kink and the plate take much. Together it is what the fix counts."""
+    text = output("in.chute", tmp_path, carriers="60", time="0.3", dump="frames")
+    upper, lower, plate = shares(text)
+    assert upper < 0.05
+    assert lower > 0.1
+    assert plate > 0.1
+    assert upper + lower + plate == pytest.approx(number(r"^dispersion ratio (\S+)", text), abs=2e-4)
+    assert (tmp_path / "chute.stl").read_text().count("endfacet") == 6
+
+
+@needs_surfaces
+def test_a_straight_chute_takes_less(tmp_path):
+    """And the carriers stay above the triangles of a file that the user gives."""
+    output("in.chute", tmp_path, carriers="20", time="0.01")
+    (tmp_path / "chute.stl").rename(tmp_path / "mine.stl")
+    kinked = shares(output("in.chute", tmp_path, carriers="60", time="0.2", stl="mine.stl"))
+    assert not (tmp_path / "chute.stl").exists()
+    straight = shares(output("in.chute", tmp_path, carriers="60", time="0.2", kink="50"))
+    assert straight[1] < 0.2 * kinked[1]

@@ -17,7 +17,9 @@ LMP = BUILD / "bin" / "lmp"
 LMP_DUST = BUILD / "bin" / "lmp-dust"
 PLUGIN = BUILD / "plugin" / "dustplugin.so"
 PREFIX = LMP.resolve().parents[1]
-DECKS = sorted((ROOT / "lammps-inputs").glob("in.*"))
+SURFACES = (Path(re.findall(r"^LAMMPS_SOURCE_DIR:PATH=(.*)", (BUILD / "CMakeCache.txt").read_text(), re.M)[0])
+            / "src/GRANSURF").is_dir()  # of triangles: since 4Jul2026
+DECKS = sorted(deck for deck in (ROOT / "lammps-inputs").glob("in.*") if SURFACES or deck.name != "in.chute")
 
 # two spheres that touch and bounce on a wall: pair and wall contacts with the damping, oblique
 DECK = """
@@ -133,6 +135,7 @@ SHORTER = {
     "in.collision.resolved": "-var coverage 0.02 -var limit 7e-6 -var dump grains",
     "in.drum": "-var carriers 200 -var drum 20e-3 -var lifter 1e-3 -var turns 0.02 -var settle 5e-3 -var dump carriers",
     "in.drop": "-var carriers 60 -var tube 8e-3 -var settle 0.02 -var rest 2e-4 -var splash 2e-3 -var field field",
+    "in.chute": "-var carriers 100 -var time 0.05 -var dump carriers",
     "in.pour": "-var carriers 100 -var time 0.03 -var dump carriers",
 }
 
@@ -171,6 +174,7 @@ def test_decks_give_the_same_numbers_in_both(tmp_path, deck):
         for wrong in (
             ("speed", "0", "above 0"),
             ("angle", "91", "at most 90"),
+            ("kink", "71", "0 to 70"),
             ("offset", "1", "below 1"),
             ("offset", "-0.1", "at least 0"),
             ("sigma_g", "0.9", "1"),
