@@ -1,7 +1,7 @@
-"""Pictures of the decks of beds, doc/images/drum.png, drop.png and pour.png: runs the decks in a folder, unless done,
-and draws.
+"""Pictures of the decks of beds, doc/images/drum.png, drop.png, pour.png and chute.png: runs the decks in a folder,
+unless done, and draws.
 
-    . build/environment; build/venv/bin/python benchmarks/bed_pictures.py --work WORK [drum drop pour]
+    . build/environment; build/venv/bin/python benchmarks/bed_pictures.py --work WORK [drum drop pour chute]
 """
 
 import argparse
@@ -23,7 +23,7 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 LMP = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build")) / "bin/lmp-dust"
 GRAINS = 4500
-EXTRA = {"drum": ["-var", "turns", "0.5"], "drop": ["-var", "field", "field"], "pour": []}
+EXTRA = {"drum": ["-var", "turns", "0.5"], "drop": ["-var", "field", "field"], "pour": [], "chute": []}
 WALL = {"color": "0.35", "linewidth": 1.2}
 
 
@@ -152,14 +152,31 @@ def pour(folder: Path) -> None:
     save(figure, "pour")
 
 
+def chute(folder: Path) -> None:
+    """The stream on the triangles of the STL file, and the curve."""
+    all_frames = frames(folder)
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained", width_ratios=(1.5, 1))
+    step = min(all_frames, key=lambda step: abs(step * 2e-6 - 0.25))
+    carriers = draw_carriers(axes[0], all_frames[step])
+    corners = re.findall(r"vertex (\S+) \S+ (\S+)", (folder / "chute.stl").read_text())
+    for triangle in 1e3 * np.array(corners, dtype=float).reshape(-1, 3, 2):
+        axes[0].plot(*triangle.T, **WALL)
+    axes[0].plot((100, 110), (-8, -8), color="black", linewidth=2)
+    axes[0].text(105, -6.5, "10 mm", ha="center")
+    axes[0].set(xlim=(-3, 140), ylim=(-76, 12), title=f"{step * 2e-6:.2f} s")
+    bar(figure, axes[0], carriers)
+    curve(axes[1], folder, "time, s")
+    save(figure, "chute")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--work", type=Path, required=True)
-    parser.add_argument("decks", nargs="*", default=["drum", "drop", "pour"])
+    parser.add_argument("decks", nargs="*", default=["drum", "drop", "pour", "chute"])
     args = parser.parse_args()
     for deck in args.decks:
         run(deck, args.work / deck)
-        {"drum": drum, "drop": drop, "pour": pour}[deck](args.work / deck)
+        {"drum": drum, "drop": drop, "pour": pour, "chute": chute}[deck](args.work / deck)
 
 
 if __name__ == "__main__":

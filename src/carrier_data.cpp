@@ -13,9 +13,10 @@
 
 using namespace LAMMPS_NS;
 
-CarrierData::CarrierData(LAMMPS *_lmp, bool rotation, bool orientations) :
+CarrierData::CarrierData(LAMMPS *_lmp, bool rotation, bool orientations, int motion) :
     Pointers(_lmp), state(nullptr), attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr),
-    began(nullptr), columns(nullptr), angle_used(rotation), orientation_used(orientations), words(0)
+    before(nullptr), began(nullptr), columns(nullptr), angle_used(rotation), orientation_used(orientations),
+    motion_size(motion), words(0)
 {
 }
 
@@ -26,6 +27,7 @@ CarrierData::~CarrierData()
   memory->destroy(orientation);
   memory->destroy(angle);
   memory->destroy(window_mass);
+  memory->destroy(before);
   memory->destroy(began);
   memory->destroy(columns);
 }
@@ -47,6 +49,7 @@ void CarrierData::grow(int nmax)
   memory->grow(columns, nmax, DetachAtom::SIZE, "dust/detach:array_atom");
   if (orientation_used) memory->grow(orientation, nmax, "dust/detach:orientation");
   if (angle_used) memory->grow(angle, nmax, 3, "dust/detach:angle");
+  if (motion_size) memory->grow(before, nmax, motion_size, "dust/detach:before");
   if (words) memory->grow(attached, nmax, words, "dust/detach:attached");
 }
 
@@ -58,6 +61,7 @@ void CarrierData::copy(int i, int j)
   std::copy_n(columns[i], static_cast<int>(DetachAtom::SIZE), columns[j]);
   if (orientation) orientation[j] = orientation[i];
   if (angle) std::copy_n(angle[i], 3, angle[j]);
+  if (before) std::copy_n(before[i], motion_size, before[j]);
   if (words) std::copy_n(attached[i], words, attached[j]);
 }
 
@@ -66,6 +70,7 @@ void CarrierData::clear(int i)
   state[i] = NO_CARRIER;
   window_mass[i] = began[i] = 0.0;
   if (angle) std::fill_n(angle[i], 3, 0.0);
+  if (before) std::fill_n(before[i], motion_size, 0.0);
   std::fill_n(columns[i], static_cast<int>(DetachAtom::SIZE), 0.0);
 }
 
@@ -116,7 +121,7 @@ std::vector<bool> CarrierData::colliding(size_t collisions) const
 
 /* ---------------------------------------------------------------------- */
 
-int CarrierData::size() const { return 1 + DetachAtom::SIZE + 2 + orientation_size() + words; }
+int CarrierData::size() const { return 1 + DetachAtom::SIZE + 2 + layout() + words; }
 
 void CarrierData::pack(int i, Dust::Packer &to) const
 {
@@ -126,6 +131,7 @@ void CarrierData::pack(int i, Dust::Packer &to) const
   to.put(began[i]);
   if (orientation) to.put(&orientation[i], 1);
   if (angle) to.put(angle[i], 3);
+  if (before) to.put(before[i], motion_size);
   to.put(attached[i], words);
 }
 
@@ -137,5 +143,6 @@ void CarrierData::unpack(int i, Dust::Unpacker &from)
   began[i] = from.number();
   if (orientation) from.get(&orientation[i], 1);
   if (angle) from.get(angle[i], 3);
+  if (before) from.get(before[i], motion_size);
   from.get(attached[i], words);
 }

@@ -26,11 +26,12 @@ class CarrierData : protected Pointers {
   Dust::Quaternion *orientation;    // if it is not the same for all for ever: TURN_EVERY steps ago at most, with
   double **angle;                   // rotation: about which the carrier has turned since
   double *window_mass;              // lost in the window that is not complete yet
+  double **before;                  // for inertia from motion: at the end of the last step
   double *began;                    // step in which the present contact did
   double **columns;                 // of the per-atom array
 
-  // rotation: carriers turn; orientations: they do, or do not start all alike
-  CarrierData(class LAMMPS *, bool rotation, bool orientations);
+  // rotation: carriers turn; orientations: they do, or do not start all alike; motion: numbers of before[i]
+  CarrierData(class LAMMPS *, bool rotation, bool orientations, int motion);
   ~CarrierData() override;
   CarrierData(const CarrierData &) = delete;
   CarrierData &operator=(const CarrierData &) = delete;
@@ -51,12 +52,13 @@ class CarrierData : protected Pointers {
 
   // of a carrier; the number of its collision does not travel, 0 stands for it
   int size() const;
-  int orientation_size() const { return angle_used ? 7 : orientation_used ? 4 : 0; }
+  int layout() const { return motion_size + (angle_used ? 7 : orientation_used ? 4 : 0); }    // tells which are used
   void pack(int i, Dust::Packer &) const;
   void unpack(int i, Dust::Unpacker &);
 
  private:
   bool angle_used, orientation_used;
+  int motion_size;
   int words;
 };
 

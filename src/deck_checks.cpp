@@ -44,7 +44,7 @@ void DeckChecks::before_run()
 {
   check_command();
   fixes.check_order();
-  fixes.before_run(settings.rotation);
+  fixes.before_run(settings.rotation, settings.by_motion);
   noticed = told = 0;
   watch_none();
   sizes_change = false;

@@ -151,10 +151,23 @@ bool DeckFixes::acts_on_carriers(const Fix *fix) const
 
 /* ---------------------------------------------------------------------- */
 
-void DeckFixes::before_run(bool rotation)
+void DeckFixes::before_run(bool rotation, bool by_motion)
 {
   look_at_walls();
-  look_at_motion(rotation);
+  if (by_motion)
+    check_bodies();
+  else
+    look_at_motion(rotation);
+}
+
+// grains within another sphere of their body do not exist, which nobody tells yet
+void DeckFixes::check_bodies() const
+{
+  for (const Fix *other : modify->get_fix_list())
+    if (other->rigid_flag && acts_on_carriers(other))
+      error->all(FLERR,
+                 "Fix dust/detach {} inertia motion is for single spheres, not for rigid bodies as of fix {} ({})",
+                 dust->id, other->id, other->style);
 }
 
 void DeckFixes::look_at_walls() const

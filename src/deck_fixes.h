@@ -22,8 +22,9 @@ class DeckFixes : protected Pointers {
 
   // what stands in the force array when it is the fix's turn must be contact forces, all of them and nothing else
   void check_order() const;
-  // warns, on all ranks, of walls that do not count and of carriers that do not move as their contact forces say
-  void before_run(bool rotation);
+  // warns, on all ranks, of walls that do not count and of carriers that do not move as their contact forces say, if
+  // it is not their motion that counts
+  void before_run(bool rotation, bool by_motion);
 
   // whether the atoms with this mask have no acceleration, whatever forces act on them
   bool holds(int mask) const { return (mask & holding) || !(mask & moving); }
@@ -45,6 +46,7 @@ class DeckFixes : protected Pointers {
   bigint count(const std::function<bool(int)> &question) const;
   void look_at_walls() const;
   void look_at_motion(bool rotation);
+  void check_bodies() const;
 };
 
 }    // namespace LAMMPS_NS

@@ -18,7 +18,7 @@ static constexpr double UNSET = -1.0;
 
 DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
     DustOptions(_lmp, "Fix dust/detach"), friction(UNSET), rolling(0.15), damping(UNSET), every(1), keep_rows(true),
-    rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), lose_mass(false), emit(0),
+    rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), by_motion(false), lose_mass(false), emit(0),
     weightless(false)
 {
   constexpr int FIRST = 3;    // after ID, group and style
@@ -55,6 +55,7 @@ std::vector<Keyword> DetachSettings::keywords()
       {"rows", [this](Keywords &words) { keep_rows = words.yes_or_no(); }},
       {"rotation", [this](Keywords &words) { rotation = words.yes_or_no(); }},
       {"stiffen", [this](Keywords &words) { stiffen = words.number(Range::at_least(1.0)); }},
+      {"inertia", [this](Keywords &words) { by_motion = words.one_of({"contact", "motion"}) == 1; }},
       {"mass",
        [this](Keywords &words) {
          lose_mass = words.yes_or_no();
@@ -81,6 +82,9 @@ void DetachSettings::check(int igroup)
   if (damping != UNSET && criteria.tangential != Dust::Criteria::INTEGRATE)
     error->all(FLERR, "{} damping needs tangential integrate: no other law follows how a grain's contact moves",
                command);
+  if (by_motion && stiffen != 1.0)
+    error->all(FLERR, "{} stiffen {} needs inertia contact: a motion does not tell which part contacts have", command,
+               stiffen);
   if (!emit) return;
   if (weightless)
     error->all(FLERR, "{} emit {} needs mass yes: grains bring the mass that their carriers lose", command, emit);

@@ -29,8 +29,9 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 
 FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
     Fix(_lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings),
-    carriers(lmp, settings.rotation, settings.rotation || !settings.same_orientation()), steps(0.0), newcomers(true),
-    mine{}, shedding(lmp, this, settings.emit), exchange_room(0)
+    carriers(lmp, settings.rotation, settings.rotation || !settings.same_orientation(),
+             settings.by_motion ? CarrierMotion::SIZE : 0),
+    steps(0.0), newcomers(true), motions(lmp), mine{}, shedding(lmp, this, settings.emit), exchange_room(0)
 {
   collisions.work.locate = settings.keep_rows || settings.lose_mass;
   checks.check_order();    // of what is there already; the rest before a run
@@ -45,6 +46,7 @@ FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
   size_local_cols = DetachRow::SIZE;
   restart_global = restart_peratom = create_attribute = 1;
   maxexchange_dynamic = 1;
+  nevery = 1;                               // end_of_step()
   comm_forward = settings.lose_mass;        // of the carriers' masses
   force_reneighbor = settings.emit != 0;    // after a run has ended with new atoms
   next_reneighbor = -1;
@@ -87,7 +89,10 @@ void FixDustDetach::build()
         coat.table->grains(), coat.table->mean_mass(), coat.table->min_hold(), coat.table->max_hold());
 }
 
-int FixDustDetach::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE; }
+int FixDustDetach::setmask()
+{
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE | (settings.by_motion ? END_OF_STEP : 0);
+}
 
 /* ---------------------------------------------------------------------- */
 
@@ -95,6 +100,7 @@ void FixDustDetach::init()
 {
   checks.before_run();
   shedding.check_deck();
+  motions.look();
 
   if (coat) {
     const double radius = settings.carrier_radius(igroup);
@@ -126,7 +132,9 @@ void FixDustDetach::init()
 void FixDustDetach::setup(int /*vflag*/)
 {
   const double *const *f = atom->f;
+  if (carriers.before) motions.note_middle();    // no motion yet
   for (int i = 0; i < atom->nlocal; i++) {
+    if (carriers.before) motions.remember(i, carriers.before[i]);
     if (!(atom->mask[i] & groupbit) || carriers.state[i] != FREE_FLIGHT) continue;
     if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0) {
       carriers.state[i] = AT_REST;
@@ -177,6 +185,7 @@ void FixDustDetach::adopt()
     mine.initial += coat.table->grains();
     if (carriers.orientation) carriers.orientation[i] = settings.orientation(atom->tag[i]);
     carriers.began[i] = NOT_WEIGHED;
+    if (carriers.before) motions.remember(i, carriers.before[i]);
   }
 }
 
@@ -210,6 +219,7 @@ void FixDustDetach::initial_integrate(int /*vflag*/)
 void FixDustDetach::post_force(int /*vflag*/)
 {
   if (coat) checks.look_at_sizes(coat.radius);
+  if (settings.by_motion) return note_contacts();
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
@@ -268,6 +278,11 @@ void FixDustDetach::post_force(int /*vflag*/)
 Dust::Motion FixDustDetach::motion_of(int i) const
 {
   Dust::Motion motion = {};
+  if (carriers.before) {
+    motion = motions.of(i, carriers.before[i], settings.rotation);
+    checks.check_finite(i, motion);
+    return motion;
+  }
   const double per_mass = settings.stiffen_acceleration / atom->rmass[i];
   for (int d = 0; d < 3; d++) motion.acceleration[d] = atom->f[i][d] * per_mass;
   if (settings.rotation) {
@@ -294,7 +309,7 @@ void FixDustDetach::collide(int i)
     checks.grains_left(i, motion.acceleration, course_of(collision));
     record(i);
   }
-  checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), coat.table->min_hold());
+  if (!settings.by_motion) checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), coat.table->min_hold());
   if (settings.emit || collision.max_packed_size() > exchange_room) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
@@ -356,8 +371,8 @@ void FixDustDetach::spin_off(int i)
 
 void FixDustDetach::record(int i)
 {
-  // v is half a step behind, but not at the start of a run
-  const double half_kick = update->setupflag ? 0.0 : 0.5 * update->dt / atom->rmass[i];
+  // v is half a step behind, but not at the start of a run or the end of a step
+  const double half_kick = update->setupflag || settings.by_motion ? 0.0 : 0.5 * update->dt / atom->rmass[i];
   const double *x = atom->x[i], *v = atom->v[i], *f = atom->f[i], *spin = atom->omega[i];
   const double velocity[3] = {v[0] + half_kick * f[0], v[1] + half_kick * f[1], v[2] + half_kick * f[2]};
   double lost = 0.0, lost_mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
@@ -627,7 +642,7 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  std::vector<double> list = {coat.checksum, double(carriers.orientation_size()), double(settings.lose_mass), steps};
+  std::vector<double> list = {coat.checksum, double(carriers.layout()), double(settings.lose_mass), steps};
   for (double number : shedding.numbers()) list.push_back(number);
   for (double number : mine.sum(world).numbers()) list.push_back(number);
   if (!rows.save(list, world) && comm->me == 0)
@@ -642,11 +657,11 @@ void FixDustDetach::write_restart(FILE *fp)
 void FixDustDetach::restart(char *buf)
 {
   const auto *p = reinterpret_cast<const double *>(buf);
-  const double checksum = *p++, orientation_size = *p++, lost_mass = *p++;
+  const double checksum = *p++, layout = *p++, lost_mass = *p++;
   if (checksum != 0.0 && coat && !coat.is_that_of(checksum))
     error->all(FLERR, "Fix dust/detach texture is not the one of the restart file");
-  if (checksum != 0.0 && orientation_size != carriers.orientation_size())
-    error->all(FLERR, "Fix dust/detach rotation or orientation is not that of the restart file");
+  if (checksum != 0.0 && layout != carriers.layout())
+    error->all(FLERR, "Fix dust/detach rotation, orientation or inertia is not that of the restart file");
   if (checksum != 0.0 && lost_mass != double(settings.lose_mass))
     error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}",
                lost_mass != 0.0 ? "yes" : "no");

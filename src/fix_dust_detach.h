@@ -14,6 +14,7 @@ FixStyle(dust/detach,FixDustDetach);
 #include "fix.h"
 
 #include "carrier_data.h"
+#include "carrier_motion.h"
 #include "core/collision_pool.h"
 #include "core/pack.h"
 #include "deck_checks.h"
@@ -41,6 +42,7 @@ class FixDustDetach : public Fix {
   void initial_integrate(int) override;
   void post_neighbor() override;
   void post_force(int) override;
+  void end_of_step() override;
   void post_run() override;
 
   double compute_scalar() override;
@@ -90,6 +92,12 @@ class FixDustDetach : public Fix {
   void finish_collision(int, int);
   void leave_contact(int);
   void spin_off(int);
+
+  // inertia from motion: who is in contact is seen with the forces, how carriers move at the end of the step
+  CarrierMotion motions;
+  std::vector<char> touched;    // in this step
+  void note_contacts();
+  void follow(int);
 
   DetachTotals mine;    // of this rank
   double attached_grains() const;

@@ -175,3 +175,17 @@ def test_notices_are_said_once(tmp_path, ranks):
     assert len(warnings) == 2, said
     assert sum("pulls" in line for line in warnings) == 1
     assert sum("too few" in line for line in warnings) == 1
+
+
+def test_inertia_from_motion_on_other_ranks_and_after_a_restart(one_rank, tmp_path):
+    folders = [tmp_path / name for name in ("one", "four", "again")]
+    for folder in folders:
+        folder.mkdir()
+    one = run(folders[0], 1, inertia="motion")
+    assert run(folders[1], 4, inertia="motion") == one
+    assert one[2] != []
+    run(folders[2], 4, inertia="motion", steps="1500", save="yes")
+    _, restarted, _ = run(folders[2], 1, inertia="motion", start="restart")
+    assert restarted.splitlines()[-1] == one[1].splitlines()[-1]
+    # and as by contact forces: these carriers are free
+    assert one[1].splitlines()[-1].split()[:6] == one_rank[1].splitlines()[-1].split()[:6]
