@@ -18,8 +18,8 @@ namespace LAMMPS_NS {
 //
 // - Verlet integrators (fix nve*) have the velocity of the middle of the step when forces are there, and another half
 //   kick makes it that of the end: a = 2 (v - v_middle)/dt, which is force/mass if nothing else acts.
-// - A fix move gives a carrier the velocity of its path from the first step on, however it moved before: that jump is no
-//   motion. With the mean velocity of the step from the places, a = 2 (v - way/dt)/dt. Its spin is steady.
+// - A fix move gives a carrier the velocity of its path from the first step on, however it moved before: that jump is
+//   no motion. With the mean velocity of the step from the places, a = 2 (v - way/dt)/dt. Its spin is steady.
 // - Of any other integrator: a = (v - v_before)/dt.
 
 class CarrierMotion : protected Pointers {

@@ -18,8 +18,8 @@ static constexpr double UNSET = -1.0;
 
 DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
     DustOptions(_lmp, "Fix dust/detach"), friction(UNSET), rolling(0.15), damping(UNSET), every(1), keep_rows(true),
-    rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), by_motion(false), lose_mass(false), emit(0),
-    weightless(false)
+    rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), by_motion(false), lose_mass(false),
+    emit(0), weightless(false)
 {
   constexpr int FIRST = 3;    // after ID, group and style
   Keywords(lmp, command, narg, arg).read(keywords(), FIRST);

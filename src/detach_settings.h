@@ -28,7 +28,7 @@ class DetachSettings : public DustOptions {
   double stiffen;                               // by which factor the deck's contacts are softer than the real ones
   double stiffen_acceleration, stiffen_time;    // what softened contacts give, times these, is what stiff ones would
   void stiffen_by(double power);    // the acceleration of the same impact goes with this power of the stiffness
-  bool by_motion;    // inertia from how carriers really move, not from contact forces
+  bool by_motion;                   // inertia from how carriers really move, not from contact forces
   bool lose_mass;
   int emit;                             // type of the atoms that detached grains become, or 0
   std::vector<std::string> contacts;    // IDs of fixes whose forces are contact forces, too

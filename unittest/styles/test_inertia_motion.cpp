@@ -182,8 +182,8 @@ TEST(InertiaMotion, ATurnedCarrierLosesWhatTheClosedFormSays)
   }
 }
 
-// On a rail along z at a wall of 45 degrees: after the way s the overlap is s/sqrt(2), and F/sqrt(2) acts along the rail:
-// k 2^(-5/4) s^(3/2), as on a wall across it whose modulus is so many times smaller.
+// On a rail along z at a wall of 45 degrees: after the way s the overlap is s/sqrt(2), and F/sqrt(2) acts along the
+// rail: k 2^(-5/4) s^(3/2), as on a wall across it whose modulus is so many times smaller.
 TEST(InertiaMotion, ACarrierOnARailHitsAnInclinedWallAsASofterFlatOne)
 {
   const auto steel = [](double modulus) {
