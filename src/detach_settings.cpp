@@ -45,9 +45,10 @@ std::vector<Keyword> DetachSettings::keywords()
       {"tangential",
        [this](Keywords &words) {
          // in the order of their names
-         constexpr decltype(criteria.tangential) LAWS[] = {Dust::Criteria::ESTIMATE, Dust::Criteria::INTEGRATE,
-                                                           Dust::Criteria::FRICTIONLESS, Dust::Criteria::OFF};
-         criteria.tangential = LAWS[words.one_of({"estimate", "integrate", "frictionless", "off"})];
+         constexpr decltype(criteria.tangential) LAWS[] = {Dust::Criteria::IMPULSE, Dust::Criteria::ESTIMATE,
+                                                           Dust::Criteria::INTEGRATE, Dust::Criteria::FRICTIONLESS,
+                                                           Dust::Criteria::OFF};
+         criteria.tangential = LAWS[words.one_of({"impulse", "estimate", "integrate", "frictionless", "off"})];
        }},
       {"criteria", [this](Keywords &words) { criteria.ibrahim = words.one_of({"liftoff", "ibrahim"}) == 1; }},
       {"counts", [this](Keywords &words) { criteria.count = words.yes_or_no(); }},

@@ -5,6 +5,7 @@
 #include "tangential_law.h"
 
 #include "tangential_estimate.h"
+#include "tangential_impulse.h"
 #include "tangential_integration.h"
 
 using namespace Dust;
@@ -14,6 +15,7 @@ const TangentialLaw *Dust::tangential_law(Criteria::Tangential name)
   switch (name) {
     case Criteria::FRICTIONLESS: return &TANGENTIAL_FRICTIONLESS;
     case Criteria::ESTIMATE: return &TANGENTIAL_ESTIMATE;
+    case Criteria::IMPULSE: return &TANGENTIAL_IMPULSE;
     case Criteria::INTEGRATE: return &TANGENTIAL_INTEGRATION;
     case Criteria::OFF: break;
   }

@@ -129,13 +129,22 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
         attached = false;
       }
     }
-    if (attached && !(rests && weak) && dot(n0, dv) < 0.0 && criteria.tangential != Criteria::OFF) {
+    const bool impulse = criteria.tangential == Criteria::IMPULSE;
+    if (attached && !(rests && weak) && (impulse || dot(n0, dv) < 0.0) && criteria.tangential != Criteria::OFF) {
       const Vec r = r_pd * n0, all = dv + cross(h.spin, r), vt0 = all - dot(all, n0) * n0;
       const Vec surface = cross(spin1, r), s0 = vt0 - surface;
       const double friction = criteria.tangential == Criteria::ESTIMATE ? 0.5 * m.friction * largest : 0.0;
       const double work = friction * 0.5 * size(s0) * contact_time;
       const double s = std::sqrt(std::max(0.0, dot(s0, s0) - 2.0 * work / mass));
-      const Vec vt = (size(s0) > 0.0 ? s / size(s0) : 0.0) * s0 + surface;
+      Vec vt = (size(s0) > 0.0 ? s / size(s0) : 0.0) * s0 + surface;
+      if (impulse) {
+        // friction's momentum, at most what makes a solid sphere roll that spins and slides at first
+        const Vec slip = vt0 - cross(g.radius * h.spin + texture.carrier_radius * spin1, n0);
+        const double pushed = m.friction * (2.0 * fc * contact_time - mass * dot(dv, n0));
+        const double to_roll = size(slip) / (1.0 / mass + g.radius * g.radius / (0.4 * mass * g.radius * g.radius));
+        const double taken = std::max(0.0, std::min(pushed, to_roll)) / mass;
+        vt = size(slip) > 0.0 ? vt0 - taken / size(slip) * slip : vt0;
+      }
       if (mass * dot(vt, vt) / r_pd > fc) {
         out.left[i] = {out.steps, TANGENTIAL};
         attached = false;

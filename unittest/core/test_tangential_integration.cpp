@@ -158,7 +158,8 @@ TEST(TangentialIntegration, AloneNeedsTheImpulses)
   const History h = random_history(random);
   const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
   std::map<int, int> sizes;
-  for (auto tangential : {Criteria::OFF, Criteria::FRICTIONLESS, Criteria::ESTIMATE, Criteria::INTEGRATE}) {
+  for (auto tangential :
+       {Criteria::OFF, Criteria::FRICTIONLESS, Criteria::ESTIMATE, Criteria::IMPULSE, Criteria::INTEGRATE}) {
     Criteria criteria;
     criteria.tangential = tangential;
     const GrainTable table(texture, CALCITE, criteria);
@@ -171,5 +172,6 @@ TEST(TangentialIntegration, AloneNeedsTheImpulses)
   }
   EXPECT_EQ(sizes[Criteria::OFF], sizes[Criteria::ESTIMATE]);
   EXPECT_EQ(sizes[Criteria::FRICTIONLESS], sizes[Criteria::ESTIMATE]);
+  EXPECT_EQ(sizes[Criteria::IMPULSE], sizes[Criteria::ESTIMATE]);
   EXPECT_GT(sizes[Criteria::INTEGRATE], sizes[Criteria::ESTIMATE] + 7 * ImpulseRecord::MAX_SPANS / 2);
 }

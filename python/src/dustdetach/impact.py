@@ -11,7 +11,7 @@ import numpy as np
 from .errors import InvalidInput, shown
 
 METHODS = ("functions", "resolved")
-TANGENTIAL = ("estimate", "integrate", "frictionless", "off")
+TANGENTIAL = ("impulse", "estimate", "integrate", "frictionless", "off")
 
 #: share of a surface that random sequential placement of discs covers before it jams
 JAMMING = 0.547

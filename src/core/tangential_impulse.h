@@ -1,0 +1,34 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_TANGENTIAL_IMPULSE_H
+#define DUST_CORE_TANGENTIAL_IMPULSE_H
+
+#include "tangential_law.h"
+
+namespace Dust {
+
+/*! Friction takes a momentum, and rolling is its limit
+ *
+ * While a grain slides, friction mu_f (2 F_c - F_n) acts against its slip s, with F_n/m_d = -a.n. Over the collision,
+ * in which n hardly changes, that is the impulse per grain mass
+ *
+ *   J = mu_f integral (2 c + a.n) dt = mu_f (2 c Dt - Dv.n),    at least 0,    Dv = v_contact - v_rebound = -integral a dt
+ *
+ * An impulse q s0/|s0| against the slip takes q from the velocity w relative to the carrier's centre and gives the spin
+ * of a solid sphere, (2/5) m R_d^2, the rolling velocity R_d Omega x n = (5/2) q s0/|s0|: of the slip
+ * w - R_d Omega x n - R_p omega x n it takes 7/2 q. At q = 2/7 |s0| none is left: the grain rolls, and from there on
+ * friction has nothing to act against. With v_t0 and s0 those at the end without friction,
+ *
+ *   v_t0 = [Dv + omega_contact x r_pd]_t,    s0 = v_t0 - (R_d omega_contact + R_p omega_rebound) x n
+ *   v_t = v_t0 - min(2/7 |s0|, J) s0/|s0|,    and a grain leaves if v_t^2/|r_pd| > c,    on either side.
+ *
+ * While a keeps its direction, slip and J grow together, so that their values at the end tell whether the grain rolled
+ * all the time. Left out: that it rolls with less friction than J while a is small (0.5 % of v_t), the turning of n by
+ * about |v_t| Dt/(2 |r_pd|), the centrifugal part of F_n, the resistance to rolling and the motion along n. */
+extern const TangentialLaw TANGENTIAL_IMPULSE;
+
+}    // namespace Dust
+
+#endif

@@ -1,0 +1,179 @@
+// The impulse law: against closed forms and against friction that is summed over the collision.
+
+#include "tangential_impulse.h"
+
+#include "collision_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+using namespace Dust;
+
+namespace {
+
+Criteria with(Criteria::Tangential law)
+{
+  Criteria criteria;
+  criteria.tangential = law;
+  return criteria;
+}
+
+// velocities of the grains that leave tangentially, by grain
+std::map<int, Vec> velocities(const GrainTable &table, const History &h)
+{
+  std::vector<uint64_t> attached = table.all_attached();
+  Workspace work;
+  Collision collision;
+  collision.begin(Quaternion(), NO_SPIN);
+  for (const Vec &a : h.a) collision.step(table, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached.data(), work);
+  collision.end(table, NO_SPIN, attached.data(), work);
+  std::map<int, Vec> found;
+  for (const Detachment &d : work.detached)
+    if (d.mode == TANGENTIAL) found[table.grain(d.bit)] = {d.velocity[0], d.velocity[1], d.velocity[2]};
+  return found;
+}
+
+Vec direction(const Grain &g) { return {g.n[0], g.n[1], g.n[2]}; }
+
+}    // namespace
+
+TEST(TangentialImpulse, RingOfTheClosedForm)
+{
+  // along z, with t the polar angle: v_t = |Dv| sin t less the smaller of 2/7 of it and mu_f (2 c Dt + |Dv| cos t)
+  const double v_crit = std::sqrt(HOLD * SHELL), bare = 0.5 * (1.0 - std::cos(0.33));
+  for (double damping : {1.112, 0.2733, 0.0766}) {
+    const History h = straight_impact(9.0, damping);
+    const double dv = size(h.before + -1.0 * h.after), time = h.a.size() * h.dt;
+    const auto leaves = [&](double t) {
+      const double slip = dv * std::sin(t), taken = 0.3 * (2.0 * HOLD * time + dv * std::cos(t));
+      return slip - std::min(2.0 / 7.0 * slip, taken) > v_crit;
+    };
+    double inside = 0.5 * M_PI, outside = 0.0;    // it grows with t up to the equator
+    ASSERT_TRUE(leaves(inside));
+    for (int i = 0; i < 60; i++) (leaves(0.5 * (inside + outside)) ? inside : outside) = 0.5 * (inside + outside);
+    const double expected = 0.5 * std::cos(inside) / (1.0 - bare);
+    double found = 0.0;
+    for (int seed = 1; seed <= 20; seed++) {
+      const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
+      const GrainTable table(texture, CALCITE, with(Criteria::IMPULSE));
+      found += by_collision(texture, table, h).north / 4500.0 / 20.0;
+    }
+    EXPECT_NEAR(found, expected, 0.003) << damping;
+  }
+}
+
+TEST(TangentialImpulse, EveryGrainLeavesThatNothingHolds)
+{
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  Material m = CALCITE;
+  m.gamma *= 1.0e-8;
+  const GrainTable table(texture, m, with(Criteria::IMPULSE));
+  EXPECT_EQ(by_collision(texture, table, straight_impact(4.0, 0.2733)).left.size(), 4500u);
+}
+
+TEST(TangentialImpulse, FrictionTakesAtMostWhatMakesAGrainRoll)
+{
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  const History h = straight_impact(12.0, 0.0766);
+  const std::map<int, Vec> free = velocities(GrainTable(texture, CALCITE, with(Criteria::FRICTIONLESS)), h);
+  Material m = CALCITE;
+  m.friction = 1.0e12;
+  const std::map<int, Vec> rough = velocities(GrainTable(texture, m, with(Criteria::IMPULSE)), h);
+  int north = 0;
+  for (const auto &[grain, v] : rough) {
+    if (direction(texture.grains[grain]).z <= 0.0) continue;
+    ASSERT_EQ(free.count(grain), 1u);
+    EXPECT_NEAR(size(v - 5.0 / 7.0 * free.at(grain)), 0.0, 1.0e-12);
+    north++;
+  }
+  EXPECT_GT(north, 1000);
+  EXPECT_LT(rough.size(), free.size());
+  m.friction = 0.0;
+  const std::map<int, Vec> smooth = velocities(GrainTable(texture, m, with(Criteria::IMPULSE)), h);
+  for (const auto &[grain, v] : free) EXPECT_NEAR(size(v - smooth.at(grain)), 0.0, 1.0e-12);
+}
+
+TEST(TangentialImpulse, FrictionIsTheMomentumSummedOverTheCollision)
+{
+  // mu_f (2 F_c - F_n) in each step of a Hertzian pulse, against the slip as it is then, and on the spin of a sphere
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  for (double friction : {0.1, 0.3, 0.6})
+    for (double damping : {0.01, 0.2733}) {
+      const History h = straight_impact(11.0, damping);
+      Material m = CALCITE;
+      m.friction = friction;
+      int slid = 0, rolled = 0;
+      for (const auto &[grain, v] : velocities(GrainTable(texture, m, with(Criteria::IMPULSE)), h)) {
+        const Vec n = direction(texture.grains[grain]);
+        if (n.z <= 0.0) continue;
+        double w = 0.0, rolling = 0.0;    // along the meridian
+        for (const Vec &a : h.a) {
+          const double push = -std::sqrt(1.0 - n.z * n.z) * a.z, slip = w + push * h.dt - rolling;
+          const double limit = friction * (2.0 * HOLD + dot(a, n)) * h.dt;
+          const double taken = std::copysign(std::min(limit, 2.0 / 7.0 * std::fabs(slip)), slip);
+          w += push * h.dt - taken;
+          rolling += 2.5 * taken;
+        }
+        (std::fabs(w - rolling) > 1.0e-9 ? slid : rolled)++;
+        // at first, while a is small, a grain rolls and needs less than its friction: and is the faster at the end
+        EXPECT_GT(std::fabs(w), size(v) - 1.0e-9);
+        EXPECT_LT(std::fabs(w), 1.006 * size(v));
+      }
+      EXPECT_GT(slid + rolled, 800);
+      if (friction == 0.3) EXPECT_GT(slid, 100);
+      if (friction == 0.6) EXPECT_GT(rolled, 100);
+    }
+}
+
+TEST(TangentialImpulse, TurningEverythingChangesNothing)
+{
+  std::mt19937 random(5);
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  for (Grain &g : texture.grains) g.radius = RD;
+  const GrainTable table(texture, CALCITE, with(Criteria::IMPULSE));
+  int left = 0;
+  for (int i = 0; i < 500; i++) {
+    const History h = random_history(random, i % 2);
+    const auto turn = [](const Vec &v) { return Vec{-v.y, v.z, -v.x}; };    // a rotation without round-off
+    Texture texture1 = texture;
+    for (Grain &g : texture1.grains) {
+      const Vec n = turn(direction(g));
+      g.n[0] = n.x, g.n[1] = n.y, g.n[2] = n.z;
+    }
+    History h1 = h;
+    for (std::vector<Vec> *vectors : {&h1.a, &h1.alpha})
+      for (Vec &v : *vectors) v = turn(v);
+    for (Vec *v : {&h1.before, &h1.after, &h1.axis, &h1.spin}) *v = turn(*v);
+    const Outcome found = by_collision(texture, table, h);
+    expect_same(by_collision(texture1, GrainTable(texture1, CALCITE, with(Criteria::IMPULSE)), h1), found);
+    left += found.left.size();
+  }
+  EXPECT_GT(left, 10000);
+}
+
+TEST(TangentialImpulse, ACarrierThatSpinsEvenlyInAStraightImpactCarriesItsGrainsAlong)
+{
+  // about the normal of the wall: the slip has no part of it, and the grains keep their share of the rotation
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  const GrainTable table(texture, CALCITE, with(Criteria::IMPULSE));
+  const History h = straight_impact(9.0, 0.2733);
+  const double spin[3] = {0.0, 0.0, 3000.0};
+  std::vector<uint64_t> attached = table.all_attached();
+  Workspace work;
+  Collision collision;
+  collision.begin(Quaternion(), spin);
+  for (const Vec &a : h.a)
+    collision.step(table, {{a.x, a.y, a.z}, {}, {0.0, 0.0, 3000.0}}, h.dt, attached.data(), work);
+  work.detached.clear();
+  ASSERT_TRUE(collision.end(table, spin, attached.data(), work));
+  for (const Detachment &d : work.detached) {
+    const Vec n = direction(texture.grains[table.grain(d.bit)]), along = SHELL * cross({0.0, 0.0, 3000.0}, n);
+    const Vec v = {d.velocity[0], d.velocity[1], d.velocity[2]};
+    EXPECT_NEAR(dot(v, along), dot(along, along), 1.0e-9 * dot(along, along));
+    EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);
+    EXPECT_LT(v.z, 0.0);
+  }
+}
