@@ -1,7 +1,7 @@
 # cmake --install build --prefix PREFIX. LAMMPS has no fixed place for plugins: it loads every *plugin.so in the folders
 # of LAMMPS_PLUGIN_PATH. So PREFIX gets
 #
-#   lib/lammps/plugins/             dustplugin.so and dust_styles.so, which it opens beside itself
+#   lib/lammps/plugins/             dustplugin.so and dust_styles.so, which it opens beside itself; libdustcore.so
 #   share/dustdetach/lammps-inputs  the decks
 #   lib/pythonX.Y/site-packages/    the Python package: found by a Python of that prefix, a virtual environment for one
 #   bin/dustdetach                  its command, which finds all three by its own place
@@ -17,6 +17,7 @@ set(DUST_PYTHON_DIR "lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}
 if(DUST_PLUGIN)
   install(TARGETS dustplugin dust_styles LIBRARY DESTINATION "${plugins}")
 endif()
+install(TARGETS dustcore LIBRARY DESTINATION "${plugins}")
 install(DIRECTORY lammps-inputs/ DESTINATION "${inputs}")
 install(DIRECTORY python/src/dustdetach DESTINATION "${DUST_PYTHON_DIR}" PATTERN __pycache__ EXCLUDE)
 

@@ -1,12 +1,12 @@
-# A spinning carrier covered with dust hits a wall: how much comes off? Detachment functions that follow the carrier's turning.
-# Takes about 0.1 s.
+# A spinning carrier covered with dust hits a wall: how much comes off? Detachment functions that follow the carrier's
+# turning. Takes about 0.1 s.
 #
 #   lmp -in in.impact.spin                               (dustplugin.so and dust_styles.so in the working folder)
 #   lmp -in in.impact.spin -var spin -5000 -var angle 60 -var plugin /path/to/dustplugin.so
 #   lmp -in in.impact.spin -var events FILE              (also list the grains that detach)
 #
-# Same impact with real grains: in.impact.resolved -var spin 2000 -var wall_friction 0.3. 1.5 mm steel carrier, 20 um calcium
-# carbonate grains. Above 13200 rad/s the grains at the carrier's equator leave it in free flight. SI units.
+# Same impact with real grains: in.impact.resolved -var spin 2000 -var wall_friction 0.3. 1.5 mm steel carrier, 20 um
+# calcium carbonate grains. Above 13200 rad/s the grains at the carrier's equator leave it in free flight. SI units.
 
 variable speed            index 8.0       # m/s
 variable angle            index 90        # degrees between velocity and wall
@@ -54,18 +54,20 @@ set             group all omega 0.0 ${spin} 0.0
 timestep        ${timestep}
 neighbor        $(0.2*v_radius) bin
 pair_style      granular
-pair_coeff      * * hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 ${wall_friction} damping coeff_restitution/limited
+pair_coeff      * * hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 ${wall_friction} &
+                damping coeff_restitution/limited
 
 fix             move all nve/sphere
-fix             wall all wall/gran granular hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 ${wall_friction} &
-                damping coeff_restitution/limited zplane 0.0 NULL
+fix             wall all wall/gran granular hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 &
+                ${wall_friction} damping coeff_restitution/limited zplane 0.0 NULL
 
-fix             dust all dust/detach texture monolayer ${grain_diameter} coverage ${coverage} seed ${seed} bare ${bare} &
-                density 2700 hamaker ${hamaker} ${z0} elastic 75e9 0.3 210e9 0.3 friction ${friction} &
+fix             dust all dust/detach texture monolayer ${grain_diameter} coverage ${coverage} seed ${seed} &
+                bare ${bare} density 2700 hamaker ${hamaker} ${z0} elastic 75e9 0.3 210e9 0.3 friction ${friction} &
                 tangential ${tangential} rotation ${rotation} every 100
 
 # one line a grain: step, carrier, grain, mode (1 normal, 2 tangential), diameter, position, velocity
-if "$(is_defined(variable,events))" then "dump events all local 100 ${events} f_dust[1] f_dust[2] f_dust[3] f_dust[4] f_dust[5] f_dust[6] f_dust[7] f_dust[8] f_dust[9] f_dust[10] f_dust[11]"
+if "$(is_defined(variable,events))" then "dump events all local 100 ${events} f_dust[1] f_dust[2] f_dust[3] &
+                f_dust[4] f_dust[5] f_dust[6] f_dust[7] f_dust[8] f_dust[9] f_dust[10] f_dust[11]"
 
 # stop when the carrier has left the wall
 variable        finished equal f_dust[9]

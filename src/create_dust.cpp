@@ -4,6 +4,7 @@
 
 #include "create_dust.h"
 
+#include "core/hertz.h"
 #include "core/jkr.h"
 #include "dust_atoms.h"
 #include "dust_gather.h"
@@ -45,39 +46,82 @@ void CreateDust::command(int narg, char **arg)
   const double carrier_radius = options.carrier_radius(igroup);
   if (carrier_radius == 0.0) error->all(FLERR, "Create_dust group {} has no carriers", arg[0]);
   const Dust::Texture texture = options.texture(carrier_radius);
-  const std::vector<Carrier> carriers = all_carriers(group->bitmask[igroup]);
+  const std::vector<Site> sites = sites_of(texture, options);
+  const std::vector<Carrier> carriers = all_carriers(group->bitmask[igroup], options);
+  check_room(carriers, sites);
+  warn_of_crushed_grains(texture, carriers, options, group->bitmask[igroup]);
+  options.save(texture);
+  create(type, carriers, sites);
+}
 
-  const tagint highest = DustAtoms::highest_tag(lmp);
-  const double grains = double(texture.grains.size());
-  if (double(highest) + grains * carriers.size() >= double(MAXTAGINT))
+/* ----------------------------------------------------------------------
+   where the grains of a texture rest on a carrier
+------------------------------------------------------------------------- */
+
+std::vector<CreateDust::Site> CreateDust::sites_of(const Dust::Texture &texture, const DustOptions &options)
+{
+  std::vector<Site> sites;
+  for (const Dust::Grain &grain : texture.grains) {
+    Site site;
+    MathExtra::copy3(grain.n, site.n);
+    site.radius = grain.radius;
+    site.mass = 4.0 / 3.0 * MathConst::MY_PI * MathSpecial::cube(grain.radius) * options.density;
+    const double r12 = Dust::effective_radius(texture.carrier_radius, grain.radius);
+    const double a0 = Dust::equilibrium_contact_radius(options.surface_energy, r12, options.modulus());
+    site.distance = texture.carrier_radius + grain.radius - Dust::equilibrium_overlap(a0, r12);
+    sites.push_back(site);
+  }
+  return sites;
+}
+
+// from the carrier's centre to the grain's
+void CreateDust::arm_of(const Carrier &carrier, const Site &site, double *arm)
+{
+  carrier.orientation.to_space(site.n, arm);
+  MathExtra::scale3(site.distance, arm);
+}
+
+/* ----------------------------------------------------------------------
+   before the first grain is made: all of them can be, or there are none
+------------------------------------------------------------------------- */
+
+void CreateDust::check_room(const std::vector<Carrier> &carriers, const std::vector<Site> &sites) const
+{
+  const double wanted = double(sites.size()) * double(carriers.size());
+  if (double(DustAtoms::highest_tag(lmp)) + wanted >= double(MAXTAGINT))
     error->all(FLERR, "Create_dust makes more atoms than LAMMPS has IDs for");
+  bigint outside = 0;
+  for (const Carrier &carrier : carriers)
+    for (const Site &site : sites) {
+      double x[3];
+      arm_of(carrier, site, x);
+      MathExtra::add3(carrier.x, x, x);
+      if (DustAtoms::beyond_fixed_border(lmp, x)) outside++;
+    }
+  if (outside)
+    error->all(FLERR,
+               "Create_dust: {} of {} grains would lie outside the box: a carrier is closer to a border than a grain's "
+               "diameter",
+               outside, static_cast<bigint>(wanted));
+}
 
+/* ---------------------------------------------------------------------- */
+
+void CreateDust::create(int type, const std::vector<Carrier> &carriers, const std::vector<Site> &sites)
+{
+  tagint tag = DustAtoms::highest_tag(lmp);
   DustAtoms atoms(lmp);
-  tagint tag = highest;
-  for (const Carrier &carrier : carriers) {
-    const Dust::Quaternion orientation = options.orientation(static_cast<tagint>(carrier.tag));
-    for (const Dust::Grain &grain : texture.grains) {
+  for (const Carrier &carrier : carriers)
+    for (const Site &site : sites) {
       tag++;    // the same ID on any number of ranks
-      const double r12 = Dust::effective_radius(carrier_radius, grain.radius);
-      const double a0 = Dust::equilibrium_contact_radius(options.surface_energy, r12, options.modulus());
-      const double distance = carrier_radius + grain.radius - Dust::equilibrium_overlap(a0, r12);
       double arm[3], x[3], v[3];
-      orientation.to_space(grain.n, arm);
-      MathExtra::scale3(distance, arm);
+      arm_of(carrier, site, arm);
       MathExtra::add3(carrier.x, arm, x);
       MathExtra::cross3(carrier.omega, arm, v);
       MathExtra::add3(carrier.v, v, v);
-      atoms.create(type, tag, x, grain.radius,
-                   4.0 / 3.0 * MathConst::MY_PI * MathSpecial::cube(grain.radius) * options.density, v, carrier.omega);
+      atoms.create(type, tag, x, site.radius, site.mass, v, carrier.omega);
     }
-  }
   const bigint made = atoms.finish();
-  const auto wanted = static_cast<bigint>(grains * carriers.size());
-  if (made != wanted)
-    error->all(FLERR,
-               "Create_dust: {} of {} grains lie outside the box: a carrier is closer to a border than a grain's "
-               "diameter",
-               wanted - made, wanted);
   if (comm->me == 0) utils::logmesg(lmp, "Created {} grains on {} carriers\n", made, carriers.size());
 }
 
@@ -85,19 +129,65 @@ void CreateDust::command(int narg, char **arg)
    the carriers of all ranks, by ID
 ------------------------------------------------------------------------- */
 
-std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit) const
+std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const DustOptions &options) const
 {
-  std::vector<Carrier> mine;
+  struct Numbers {
+    double tag, x[3], v[3], omega[3];
+  };
+  std::vector<Numbers> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    Carrier c;
-    c.tag = double(atom->tag[i]);
-    MathExtra::copy3(atom->x[i], c.x);
-    MathExtra::copy3(atom->v[i], c.v);
-    MathExtra::copy3(atom->omega[i], c.omega);
-    mine.push_back(c);
+    Numbers n;
+    n.tag = double(atom->tag[i]);
+    MathExtra::copy3(atom->x[i], n.x);
+    MathExtra::copy3(atom->v[i], n.v);
+    MathExtra::copy3(atom->omega[i], n.omega);
+    mine.push_back(n);
   }
-  std::vector<Carrier> all = dust_gather(mine, ALL_RANKS, world);
-  std::sort(all.begin(), all.end(), [](const Carrier &a, const Carrier &b) { return a.tag < b.tag; });
-  return all;
+  std::vector<Numbers> all = dust_gather(mine, ALL_RANKS, world);
+  std::sort(all.begin(), all.end(), [](const Numbers &a, const Numbers &b) { return a.tag < b.tag; });
+  std::vector<Carrier> carriers;
+  for (const Numbers &n : all) {
+    Carrier carrier = {{}, {}, {}, options.orientation(static_cast<tagint>(n.tag))};
+    MathExtra::copy3(n.x, carrier.x);
+    MathExtra::copy3(n.v, carrier.v);
+    MathExtra::copy3(n.omega, carrier.omega);
+    carriers.push_back(carrier);
+  }
+  return carriers;
+}
+
+/* ----------------------------------------------------------------------
+   of a carrier that meets a wall of its material with the middle of its bare cap, as fast as it moves that way now: no
+   grain may reach the wall before the carrier's largest overlap, as it would brake the carrier
+------------------------------------------------------------------------- */
+
+void CreateDust::warn_of_crushed_grains(const Dust::Texture &texture, const std::vector<Carrier> &carriers,
+                                        const DustOptions &options, int groupbit) const
+{
+  const double R = texture.carrier_radius, E = options.elastic[2], nu = options.elastic[3];
+  const double *axis = texture.bare.axis;
+  double speed = 0.0;
+  for (const Carrier &c : carriers)
+    speed = std::max(speed, options.same_orientation() ? MathExtra::dot3(c.v, axis) : MathExtra::len3(c.v));
+  double mass = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) mass = std::max(mass, atom->rmass[i]);
+  MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double overlap = Dust::hertz_overlap(Dust::combined_modulus(E, nu, E, nu), R, mass, speed);
+
+  int crushed = 0;
+  double widest = 0.0;    // half-angle of the cap that would be needed
+  for (const Dust::Grain &grain : texture.grains) {
+    const double level = (R - overlap - grain.radius) / (R + grain.radius);
+    if (MathExtra::dot3(grain.n, axis) <= level) continue;
+    crushed++;
+    widest = std::max(widest, std::acos(level));
+  }
+  if (crushed && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Create_dust: {} grains of a carrier reach a wall before the carrier has reached its largest overlap, "
+        "are crushed there and brake it: use bare {:.2f}",
+        crushed, std::ceil(100.0 * widest) / 100.0);
 }

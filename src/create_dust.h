@@ -13,6 +13,7 @@ CommandStyle(create_dust,CreateDust);
 
 #include "command.h"
 
+#include "core/quaternion.h"
 #include "core/texture.h"
 
 #include <vector>
@@ -27,10 +28,20 @@ class CreateDust : public Command {
   void command(int, char **) override;
 
  private:
-  struct Carrier {
-    double tag, x[3], v[3], omega[3];
+  struct Site {    // of a grain on a carrier
+    double n[3], distance, radius, mass;
   };
-  std::vector<Carrier> all_carriers(int) const;
+  struct Carrier {
+    double x[3], v[3], omega[3];
+    Dust::Quaternion orientation;
+  };
+  static std::vector<Site> sites_of(const Dust::Texture &, const class DustOptions &);
+  static void arm_of(const Carrier &, const Site &, double *);
+  std::vector<Carrier> all_carriers(int groupbit, const DustOptions &) const;
+  void check_room(const std::vector<Carrier> &, const std::vector<Site> &) const;
+  void create(int type, const std::vector<Carrier> &, const std::vector<Site> &);
+  void warn_of_crushed_grains(const Dust::Texture &, const std::vector<Carrier> &, const class DustOptions &,
+                              int groupbit) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -5,6 +5,7 @@
 #include "deck_checks.h"
 
 #include "core/geometry.h"
+#include "core/hertz.h"
 #include "core/jkr.h"
 #include "detach_settings.h"
 
@@ -31,8 +32,8 @@ static constexpr double HERTZ = 0.4, HOOKE = 0.5;    // F ~ stiffness^power for 
 
 DeckChecks::DeckChecks(LAMMPS *_lmp, const Fix *_dust, DetachSettings &_settings) :
     Pointers(_lmp), dust(_dust), settings(_settings), fixes(_lmp, _dust, _settings.contacts), sizes_change(false),
-    unread(false), modulus(Dust::combined_modulus(_settings.elastic[2], _settings.elastic[3], _settings.elastic[2],
-                                                  _settings.elastic[3])),
+    modulus(
+        Dust::combined_modulus(_settings.elastic[2], _settings.elastic[3], _settings.elastic[2], _settings.elastic[3])),
     softest(1.0), soft_wall(false), noticed(0), told(0)
 {
 }
@@ -96,7 +97,8 @@ void DeckChecks::look_at_contacts()
 {
   const DeckContacts deck(lmp, types_of_carriers());
   contacts = deck.all;
-  unread = !deck.other_styles.empty() || fixes.has_contacts();
+  unread = fixes.unread_contacts();
+  for (const std::string &style : deck.other_styles) unread.push_back("pair_style " + style);
   pulling.clear();
   softest = 1.0;
   soft_wall = false;
@@ -144,12 +146,14 @@ void DeckChecks::settle_stiffen()
           "{:.4g} times as stiffen says: inertia is too large",
           dust->id, contact.where, modulus / contact.stiffness, settings.stiffen);
   }
-  if (unread)
-    error->all(
-        FLERR,
-        "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and fix wall/gran only, not for those "
-        "of other pair styles and of keyword contact",
-        dust->id);
+  // surfaces have granular models that cannot be read
+  for (const std::string &style : unread)
+    if (!utils::strmatch(style, "surf"))
+      error->all(
+          FLERR,
+          "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and fix wall/gran, not for those "
+          "of {}",
+          dust->id, style);
   if (first) settings.stiffen_by(first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
 }
 
@@ -172,19 +176,33 @@ void DeckChecks::check_all_sizes(double radius) const
 }
 
 /* ----------------------------------------------------------------------
-   whether carrier i touches no other atom: what pushes it then is one wall, or walls no more than 90 degrees apart
+   the only atom that carrier i touches; NOBODY if only walls can push it, and then one, or such that are no more than 90
+   degrees apart
 ------------------------------------------------------------------------- */
 
-bool DeckChecks::alone(int i) const
+int DeckChecks::neighbour(int i) const
 {
   constexpr double NEAR = 1.01;
+  int found = NOBODY;
   for (int j = 0; j < atom->nlocal + atom->nghost; j++) {
     if (j == i) continue;
     const double *a = atom->x[i], *b = atom->x[j], d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
     const double reach = NEAR * (atom->radius[i] + atom->radius[j]);
-    if (Dust::dot(d, d) < reach * reach) return false;
+    if (Dust::dot(d, d) >= reach * reach) continue;
+    if (found != NOBODY) return SEVERAL;
+    found = j;
   }
-  return true;
+  return found;
+}
+
+// whether what pushes carrier i is one contact; of two atoms it is if each is drawn to the other, or would be by a wall
+bool DeckChecks::pulled_by_one(int i) const
+{
+  const int j = neighbour(i);
+  if (j == NOBODY) return true;
+  if (j == SEVERAL || j >= atom->nlocal || neighbour(j) != i) return false;
+  const double *a = atom->x[i], *b = atom->x[j], d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  return Dust::dot(atom->f[i], d) > 0.0 && Dust::dot(atom->f[j], d) < 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -194,16 +212,16 @@ bool DeckChecks::alone(int i) const
 
 void DeckChecks::grains_left(int i, const double *acceleration, const Course &course)
 {
-  if ((noticed & bit(PULLS)) || (pulling.empty() && !unread)) return;
+  if ((noticed & bit(PULLS)) || (pulling.empty() && unread.empty())) return;
   const double along = Dust::dot(acceleration, course.impulse),
                impulse = std::sqrt(Dust::dot(course.impulse, course.impulse));
-  if (along >= -course.least_hold * impulse) return;
-  if (pulling.empty() && !alone(i)) return;
+  if (along >= -course.min_hold * impulse) return;
+  if (pulling.empty() && !pulled_by_one(i)) return;
+  const std::string which = pulling.empty() ? utils::join_words(unread, ", ") + "; use contacts that do not"
+                                            : pulling + "; use damping coeff_restitution/limited, or limit_damping";
   notice(PULLS,
          fmt::format("a contact force pulls carrier {} back at the end of its rebound, and grains leave for it: {}",
-                     atom->tag[i],
-                     pulling.empty() ? "use contacts that do not"
-                                     : pulling + "; use damping coeff_restitution/limited, or limit_damping"));
+                     atom->tag[i], which));
 }
 
 /* ----------------------------------------------------------------------
@@ -213,7 +231,7 @@ void DeckChecks::grains_left(int i, const double *acceleration, const Course &co
 void DeckChecks::collision_over(int i, double steps, const Course &course)
 {
   const double enough = settings.stiffen > 1.0 ? ENOUGH_SOFT_STEPS : ENOUGH_STEPS;
-  if (!(noticed & bit(FEW_STEPS)) && steps > 0.0 && steps < enough && course.peak > course.least_hold)
+  if (!(noticed & bit(FEW_STEPS)) && steps > 0.0 && steps < enough && course.peak > course.min_hold)
     notice(
         FEW_STEPS,
         fmt::format("carrier {} was in contact for {} steps, too few to follow its collision: use a timestep of {:.2g} "
@@ -221,20 +239,11 @@ void DeckChecks::collision_over(int i, double steps, const Course &course)
                     atom->tag[i], steps, update->dt * steps / enough, enough));
   if (noticed & bit(SOFT)) return;
   const Softness softness = soft_contact(i, steps, course);
-  if (softness.factor <= 1.0 || course.peak * softness.factor <= course.least_hold) return;
+  if (softness.factor <= 1.0 || course.peak * softness.factor <= course.min_hold) return;
   notice(SOFT,
          fmt::format("{} softer than contacts of the carrier material (keyword elastic), and the inertia of carrier {} "
                      "{:.3g} times too small: {}",
                      softness.which, atom->tag[i], softness.factor, softness.advice));
-}
-
-/* ----------------------------------------------------------------------
-   peak force of the Hertz impact of two bodies with this effective radius, mass and relative speed
-------------------------------------------------------------------------- */
-
-static double hertz_peak(double modulus, double radius, double mass, double speed)
-{
-  return std::pow(4.0 / 3.0 * modulus * std::sqrt(radius), 0.4) * std::pow(1.25 * mass * speed * speed, 0.6);
 }
 
 /* ----------------------------------------------------------------------
@@ -248,35 +257,38 @@ DeckChecks::Softness DeckChecks::soft_contact(int i, double steps, const Course 
   if (softest > SOFTER)
     return {std::pow(softest, HERTZ), fmt::format("{} is {:.4g} times", soft, softest * settings.stiffen),
             fmt::format("give stiffen {:.4g}{}", softest * settings.stiffen, soft_wall ? but_walls : "")};
+  // two alike, or one and a wall
   const double mass = atom->rmass[i], radius = atom->radius[i];
   const double speed = 0.5 * std::sqrt(Dust::dot(course.impulse, course.impulse));
+  const auto stiff_peak = [&](double share) {
+    return Dust::hertz_peak_force(modulus, share * radius, share * mass, speed / share);
+  };
   for (const CarrierContact &contact : contacts) {
     if (contact.law != CarrierContact::HOOKE) continue;
-    // two alike, or one and a wall
-    const double share = contact.wall ? 1.0 : 0.5, approach = speed / share;
-    const double factor = hertz_peak(modulus, share * radius, share * mass, approach) /
-                          (approach * std::sqrt(contact.stiffness * share * mass) * settings.stiffen_acceleration);
+    const double share = contact.wall ? 1.0 : 0.5, peak = speed / share * std::sqrt(contact.stiffness * share * mass);
+    const double factor = stiff_peak(share) / (peak * settings.stiffen_acceleration);
     if (factor > MUCH_SOFTER)
       return {factor, contact.where + " is", "use a larger stiffness, or stiffen" + (contact.wall ? but_walls : "")};
   }
-  if (unread && steps > 0.0 && bounced(i, steps, course.impulse)) {
-    const double factor = hertz_peak(modulus, radius, mass, speed) / (mass * course.peak);
-    if (factor > MUCH_SOFTER && alone(i)) return {factor, "the contact is", "use a larger stiffness" + but_walls};
+  if (!unread.empty() && steps > 0.0 && bounced(i, steps, course.impulse)) {
+    const int j = neighbour(i);
+    const double factor = stiff_peak(j == NOBODY ? 1.0 : 0.5) / (mass * course.peak);
+    if (factor > MUCH_SOFTER && j != SEVERAL)
+      return {factor, "contacts of " + utils::join_words(unread, ", ") + " are", "use a larger stiffness" + but_walls};
   }
   return {1.0, "", ""};
 }
 
 /* ----------------------------------------------------------------------
-   whether one push has turned back carrier i: it came against its impulse, went off along it, and did not get far
-   meanwhile
+   whether one push has turned back carrier i: it came against its impulse, went off along it, and meanwhile has not got
+   far across it
 ------------------------------------------------------------------------- */
 
 bool DeckChecks::bounced(int i, double steps, const double *impulse) const
 {
-  const double *v = atom->v[i], size2 = Dust::dot(impulse, impulse), after = Dust::dot(v, impulse);
-  const double before[3] = {v[0] - impulse[0], v[1] - impulse[1], v[2] - impulse[2]};
-  const double fastest2 = std::max(Dust::dot(v, v), Dust::dot(before, before)), time = steps * update->dt;
-  return after > 0.0 && after < size2 && fastest2 * time * time < atom->radius[i] * atom->radius[i];
+  const double *v = atom->v[i], size2 = Dust::dot(impulse, impulse), along = Dust::dot(v, impulse);
+  const double across2 = Dust::dot(v, v) - along * along / size2, time = steps * update->dt;
+  return along > 0.0 && along < size2 && across2 * time * time < atom->radius[i] * atom->radius[i];
 }
 
 /* ----------------------------------------------------------------------

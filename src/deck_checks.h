@@ -44,7 +44,7 @@ class DeckChecks : protected Pointers {
   struct Course {
     const double *impulse;    // per mass
     double peak;              // acceleration
-    double least_hold;        // pull-off force per grain mass
+    double min_hold;          // pull-off force per grain mass
   };
   // in a step with contact force in which grains left carrier i
   void grains_left(int i, const double *acceleration, const Course &);
@@ -53,9 +53,9 @@ class DeckChecks : protected Pointers {
 
   // whether another fix changes the motion that the contact force gives a carrier: one carrier is watched at a time,
   // over two strong steps
-  void watch(int i, double acceleration2, double least_hold)
+  void watch(int i, double acceleration2, double min_hold)
   {
-    if (!(noticed & bit(NOT_FOLLOWED)) && acceleration2 > least_hold * least_hold) look_at_force(i);
+    if (!(noticed & bit(NOT_FOLLOWED)) && acceleration2 > min_hold * min_hold) look_at_force(i);
   }
   void step_begins()
   {
@@ -77,12 +77,12 @@ class DeckChecks : protected Pointers {
 
   // contacts of the carriers, as they are in this run
   std::vector<CarrierContact> contacts;
-  bool unread;            // there are contact forces of other styles
-  std::string pulling;    // contacts that may pull
-  double modulus;         // E* of two carriers of the material
-  double softest;         // factor by which the softest Hertz contact is softer than that and stiffen say, or 1
-  std::string soft;       // which it is
-  bool soft_wall;         // of a wall
+  std::vector<std::string> unread;    // further styles with contact forces
+  std::string pulling;                // contacts that may pull
+  double modulus;                     // E* of two carriers of the material
+  double softest;      // factor by which the softest Hertz contact is softer than that and stiffen say, or 1
+  std::string soft;    // which it is
+  bool soft_wall;      // of a wall
 
   unsigned noticed, told;    // bits of what this rank has noticed, and of what has been said
   std::array<std::string, NNOTICES> lines;
@@ -102,7 +102,9 @@ class DeckChecks : protected Pointers {
   void look_at_contacts();
   void settle_stiffen();
   std::vector<int> types_of_carriers() const;
-  bool alone(int i) const;
+  enum { NOBODY = -1, SEVERAL = -2 };
+  int neighbour(int i) const;
+  bool pulled_by_one(int i) const;
   void check_all_sizes(double radius) const;
   struct Softness {
     double factor;

@@ -195,15 +195,26 @@ void DeckFixes::look_at_motion(bool rotation)
       continue;
     const bigint carriers = count([bit](int mask) { return mask & bit; });
     if (carriers && comm->me == 0)
-      error->warning(FLERR, "Fix dust/detach {}: {} carriers are {} by fix {} ({}): {}", dust->id, carriers, what,
-                     other->id, other->style, so);
+      error->warning(FLERR, "Fix dust/detach {}: carriers are {} by fix {} ({}), {} of them: {}", dust->id, what,
+                     other->id, other->style, carriers, so);
   }
   const bigint still = count([this](int mask) { return !(mask & moving); });
   if (still && comm->me == 0)
     error->warning(FLERR,
-                   "Fix dust/detach {}: no fix such as nve/sphere moves {} carriers: contact forces do not accelerate "
-                   "them, and they lose nothing",
+                   "Fix dust/detach {}: carriers are moved by no fix such as nve/sphere, {} of them: contact forces do "
+                   "not accelerate them, and they lose nothing",
                    dust->id, still);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<std::string> DeckFixes::unread_contacts() const
+{
+  std::vector<std::string> list;
+  for (const Fix *other : modify->get_fix_list())
+    if (is_contact(other) && !utils::strmatch(other->style, "^wall/gran"))
+      list.push_back(fmt::format("fix {} ({})", other->id, other->style));
+  return list;
 }
 
 /* ---------------------------------------------------------------------- */

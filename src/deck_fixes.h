@@ -27,8 +27,8 @@ class DeckFixes : protected Pointers {
 
   // whether the atoms with this mask have no acceleration, whatever forces act on them
   bool holds(int mask) const { return (mask & holding) || !(mask & moving); }
-  // whether there are contact forces of other fixes than granular walls
-  bool has_contacts() const { return !contacts.empty(); }
+  // fixes with contact forces that are no granular walls: "fix w (indent)"
+  std::vector<std::string> unread_contacts() const;
   // those that may keep an atom from moving as its contact force says
   std::string suspects(int i) const;
 

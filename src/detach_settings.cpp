@@ -40,7 +40,7 @@ std::vector<Keyword> DetachSettings::keywords()
   std::vector<Keyword> table = DustOptions::keywords();
   const std::vector<Keyword> own = {
       {"friction", [this](Keywords &words) { friction = words.number(Range::at_least(0.0)); }},
-      {"rolling", [this](Keywords &words) { rolling = words.number(Range::at_least(0.0)); }},
+      {"rolling", [this](Keywords &words) { rolling = words.number(Range::from_to(0.0, 3.15)); }},
       {"damping", [this](Keywords &words) { damping = words.number(Range::at_least(0.0)); }},
       {"tangential",
        [this](Keywords &words) {
@@ -79,6 +79,9 @@ void DetachSettings::check(int igroup)
   if (friction == UNSET) friction = 0.3;
   if (rotation && (!atom->omega_flag || !atom->torque_flag))
     error->all(FLERR, "{} rotation yes needs atoms with spin and torque, such as atom_style sphere", command);
+  if (damping != UNSET && criteria.tangential != Dust::Criteria::INTEGRATE)
+    error->all(FLERR, "{} damping needs tangential integrate: no other law follows how a grain's contact moves",
+               command);
   if (!emit) return;
   if (weightless)
     error->all(FLERR, "{} emit {} needs mass yes: grains bring the mass that their carriers lose", command, emit);

@@ -9,6 +9,7 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <cstring>
 #include <numeric>
 
@@ -26,7 +27,12 @@ struct DetachTotals {
 
   // to and from numbers, which a restart file keeps
   static constexpr int SIZE = Dust::NMODES + 7;
-  const double *numbers() const { return reinterpret_cast<const double *>(this); }
+  std::array<double, SIZE> numbers() const
+  {
+    std::array<double, SIZE> list;
+    std::memcpy(list.data(), this, sizeof(list));
+    return list;
+  }
   static DetachTotals from(const double *numbers)
   {
     DetachTotals totals;
@@ -37,9 +43,9 @@ struct DetachTotals {
   // over all ranks, on each
   DetachTotals sum(MPI_Comm world) const
   {
-    double all[SIZE];
-    MPI_Allreduce(numbers(), all, SIZE, MPI_DOUBLE, MPI_SUM, world);
-    return from(all);
+    auto all = numbers();
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), SIZE, MPI_DOUBLE, MPI_SUM, world);
+    return from(all.data());
   }
 };
 

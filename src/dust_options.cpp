@@ -14,17 +14,56 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
+#include "math_const.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <sstream>
+#include <new>
 
 using namespace LAMMPS_NS;
 
 static constexpr double UNSET = -1.0;
+
+/* ----------------------------------------------------------------------
+   what no grain and no carrier is made of is a slip of units. Units lj have no scale.
+------------------------------------------------------------------------- */
+
+namespace {
+
+struct Dimension {    // powers of mass, length and time
+  int mass, length, time;
+};
+constexpr Dimension LENGTH = {0, 1, 0}, DENSITY = {1, -3, 0}, ENERGY = {1, 2, -2}, SURFACE_ENERGY = {1, 0, -2},
+                    PRESSURE = {1, -1, -2}, ACCELERATION = {0, 1, -2};
+
+struct UnitStyle {    // how many of its units are one of SI
+  const char *name;
+  double mass, length, time;
+};
+constexpr UnitStyle UNIT_STYLES[] = {{"si", 1.0, 1.0, 1.0},
+                                     {"cgs", 1e3, 1e2, 1.0},
+                                     {"micro", 1e15, 1e6, 1e6},
+                                     {"nano", 1e21, 1e9, 1e9}};
+
+// a quantity of SI in the units of the deck; 0 with units lj
+double from_si(double value, const Dimension &of, const std::string &units)
+{
+  for (const UnitStyle &style : UNIT_STYLES)
+    if (units == style.name)
+      return value * std::pow(style.mass, of.mass) * std::pow(style.length, of.length) * std::pow(style.time, of.time);
+  return 0.0;
+}
+
+Range plausible(double low, double high, const Dimension &of, const std::string &units)
+{
+  const double lowest = from_si(low, of, units), highest = from_si(high, of, units);
+  if (highest == 0.0) return Range::above(0.0);
+  return (low > 0.0 ? Range::from_to(lowest, highest) : Range::above(0.0).at_most(highest)).in("with units " + units);
+}
+
+}    // namespace
 
 /* ---------------------------------------------------------------------- */
 
@@ -53,17 +92,13 @@ std::vector<Keyword> DustOptions::keywords()
       {"seed", [this](Keywords &words) { seed = words.whole_number(1, MAXSMALLINT); }},
       {"bare", [this](Keywords &words) { take_bare(words); }},
       {"distribution", [this](Keywords &words) { take_distribution(words); }},
-      {"density", [this](Keywords &words) { density = words.number(Range::above(0.0)); }},
-      {"hamaker",
-       [this](Keywords &words) {
-         if (surface_energy != UNSET) words.refuse("and surface: the adhesion is given twice");
-         const double A = words.number(Range::above(0.0), "A"), z0 = words.number(Range::above(0.0), "z0");
-         surface_energy = Dust::surface_energy(A, z0);
-       }},
+      {"density",
+       [this](Keywords &words) { density = words.number(plausible(10.0, 3e4, DENSITY, update->unit_style)); }},
+      {"hamaker", [this](Keywords &words) { take_hamaker(words); }},
       {"surface",
        [this](Keywords &words) {
          if (surface_energy != UNSET) words.refuse("and hamaker: the adhesion is given twice");
-         surface_energy = words.number(Range::above(0.0));
+         surface_energy = words.number(surface_energies());
        }},
       {"elastic", [this](Keywords &words) { take_elastic(words); }},
       {"orientation",
@@ -102,11 +137,28 @@ void DustOptions::take_bare(Keywords &words)
 
 /* ---------------------------------------------------------------------- */
 
+Range DustOptions::surface_energies() const { return plausible(0.0, 10.0, SURFACE_ENERGY, update->unit_style); }
+
+void DustOptions::take_hamaker(Keywords &words)
+{
+  if (surface_energy != UNSET) words.refuse("and surface: the adhesion is given twice");
+  const double A = words.number(plausible(1e-22, 1e-17, ENERGY, update->unit_style), "A");
+  const double z0 = words.number(plausible(1e-11, 1e-7, LENGTH, update->unit_style), "z0");
+  surface_energy = Dust::surface_energy(A, z0);
+  if (!surface_energies().holds(surface_energy))
+    words.refuse(
+        fmt::format("A and z0 give the surface energy {:g}: it must be {}", surface_energy, surface_energies().text()));
+}
+
+/* ---------------------------------------------------------------------- */
+
 void DustOptions::take_elastic(Keywords &words)
 {
   const char *names[] = {"E", "nu", "E_carrier", "nu_carrier"};
   for (int k = 0; k < 4; k++)
-    elastic[k] = words.number(k % 2 ? Range::above(-1.0).at_most(0.5) : Range::above(0.0), names[k]);
+    elastic[k] =
+        words.number(k % 2 ? Range::above(-1.0).at_most(0.5) : plausible(1e6, 1e13, PRESSURE, update->unit_style),
+                     names[k]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -129,32 +181,46 @@ void DustOptions::read(int first, int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   rank 0 reads, all parse the same text
+   rank 0 does it; all stop if it fails
 ------------------------------------------------------------------------- */
+
+template <typename Action> void DustOptions::on_one_rank(const std::string &what, Action action) const
+{
+  std::string wrong;
+  if (comm->me == 0) {
+    try {
+      action();
+    } catch (const Dust::TextureError &e) {
+      wrong = e.what();
+    } catch (const std::bad_alloc &) {
+      wrong = "not enough memory for its grains";
+    }
+  }
+  int size = static_cast<int>(wrong.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, world);
+  wrong.resize(size);
+  MPI_Bcast(wrong.data(), size, MPI_CHAR, 0, world);
+  if (size) error->all(FLERR, "{} {}: {}", command, what, wrong);
+}
+
+// from rank 0 to all
+void DustOptions::share(Dust::Texture &texture) const
+{
+  MPI_Bcast(&texture.carrier_radius, 1, MPI_DOUBLE, 0, world);
+  MPI_Bcast(&texture.bare.half_angle, 1, MPI_DOUBLE, 0, world);
+  MPI_Bcast(texture.bare.axis, 3, MPI_DOUBLE, 0, world);
+  int number = static_cast<int>(texture.grains.size());
+  MPI_Bcast(&number, 1, MPI_INT, 0, world);
+  texture.grains.resize(number);
+  static_assert(sizeof(Dust::Grain) == 4 * sizeof(double), "grains are sent as numbers");
+  MPI_Bcast(texture.grains.data(), 4 * number, MPI_DOUBLE, 0, world);
+}
 
 void DustOptions::read_file(const std::string &name)
 {
   file = name;
-  std::string text;
-  int size = -1;
-  if (comm->me == 0) {
-    std::ifstream in(file);
-    std::ostringstream all;
-    if (in && all << in.rdbuf()) {
-      text = all.str();
-      size = static_cast<int>(text.size());
-    }
-  }
-  MPI_Bcast(&size, 1, MPI_INT, 0, world);
-  if (size < 0) error->all(FLERR, "{} cannot read texture file {}", command, file);
-  text.resize(size);
-  MPI_Bcast(&text[0], size, MPI_CHAR, 0, world);
-  try {
-    std::istringstream in(text);
-    from_file = Dust::read_texture(in);
-  } catch (Dust::TextureError &e) {
-    error->all(FLERR, "{} texture file {}: {}", command, file, e.what());
-  }
+  on_one_rank("texture file " + file, [this]() { from_file = Dust::read_texture_file(file); });
+  share(from_file);
 }
 
 /* ----------------------------------------------------------------------
@@ -234,30 +300,48 @@ double DustOptions::carrier_radius(int igroup) const
 
 Dust::Texture DustOptions::texture(double radius) const
 {
-  Dust::Texture made;
-  try {
-    if (!file.empty())
-      made = from_file;
-    else if (distributed)
-      made = Dust::place_monolayer(radius, sizes, coverage, bare, seed);
-    else
-      made = Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
-  } catch (Dust::TextureError &e) {
-    error->all(FLERR, "{} texture: {}", command, e.what());
+  Dust::Texture made = from_file;
+  if (file.empty()) {
+    on_one_rank("texture", [&]() {
+      made = distributed ? Dust::place_monolayer(radius, sizes, coverage, bare, seed)
+                         : Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
+    });
+    share(made);
   }
   if (!same_size(made.carrier_radius, radius))
     error->all(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, file,
                2.0 * made.carrier_radius, 2.0 * radius);
-  if (!write.empty()) {
-    int written = 1;
-    if (comm->me == 0) {
-      std::ofstream out(write);
-      Dust::write_texture(made, out);
-      out.close();
-      written = out ? 1 : 0;
-    }
-    MPI_Bcast(&written, 1, MPI_INT, 0, world);
-    if (!written) error->all(FLERR, "{} cannot write texture file {}", command, write);
-  }
+  check_plausible(made);
   return made;
+}
+
+/* ----------------------------------------------------------------------
+   grains that could not be there show that something was given in other units
+------------------------------------------------------------------------- */
+
+void DustOptions::check_plausible(const Dust::Texture &texture) const
+{
+  const std::string units = update->unit_style;
+  const double gravity = from_si(9.81, ACCELERATION, units);
+  if (gravity == 0.0) return;
+  double largest = 0.0;
+  for (const Dust::Grain &grain : texture.grains) largest = std::max(largest, grain.radius);
+  if (2.0 * largest >= texture.carrier_radius)
+    error->all(FLERR, "{} has grains of diameter {:g}: it must be below the carriers' radius, {:g}", command,
+               2.0 * largest, texture.carrier_radius);
+  const double pull_off = Dust::pull_off_force(surface_energy, Dust::effective_radius(texture.carrier_radius, largest));
+  const double held = pull_off / (4.0 / 3.0 * MathConst::MY_PI * largest * largest * largest * density);
+  if (held < gravity)
+    error
+        ->all(FLERR,
+              "{} has grains of diameter {:g} that are held up to an acceleration of {:g}: it must be at least that of "
+              "gravity, {:g} with units {}",
+              command, 2.0 * largest, held, gravity, units);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DustOptions::save(const Dust::Texture &texture) const
+{
+  if (!write.empty()) on_one_rank("write " + write, [&]() { Dust::write_texture_file(texture, write); });
 }

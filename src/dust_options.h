@@ -29,8 +29,10 @@ class DustOptions : protected Pointers {
   double carrier_radius(int igroup) const;
   // whether carriers of two radii can share a texture
   static bool same_size(double, double);
-  // the texture for carriers of a radius; writes it to a file if asked for
+  // the texture for carriers of a radius
   Dust::Texture texture(double carrier_radius) const;
+  // writes it to a file if that is asked for
+  void save(const Dust::Texture &) const;
 
   // how the carrier with an ID stands at first
   Dust::Quaternion orientation(tagint) const;
@@ -61,9 +63,14 @@ class DustOptions : protected Pointers {
 
   void take_texture(Keywords &);
   void take_bare(Keywords &);
+  void take_hamaker(Keywords &);
+  Range surface_energies() const;
   void take_elastic(Keywords &);
   void take_distribution(Keywords &);
+  template <typename Action> void on_one_rank(const std::string &what, Action) const;
+  void share(Dust::Texture &) const;
   void read_file(const std::string &);
+  void check_plausible(const Dust::Texture &) const;
 };
 
 }    // namespace LAMMPS_NS

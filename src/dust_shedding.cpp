@@ -4,185 +4,288 @@
 
 #include "dust_shedding.h"
 
-#include "core/geometry.h"
 #include "dust_atoms.h"
 #include "dust_gather.h"
+#include "dust_room.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
-#include "update.h"
+#include "error.h"
+#include "fix.h"
+#include "memory.h"
+#include "modify.h"
+#include "neighbor.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 using namespace LAMMPS_NS;
 
-static double distance2(const double *a, const double *b)
+DustShedding::DustShedding(LAMMPS *lmp, Fix *fix, int emit) :
+    Pointers(lmp), fix(fix), emit(emit), clock(0.0), changed(false), highest(0), slot(nullptr)
 {
-  const double e[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return Dust::dot(e, e);
+  if (emit && !atom->tag_enable) error->all(FLERR, "Fix dust/detach emit {} needs atom IDs: atom_modify id yes", emit);
 }
 
-DustShedding::DustShedding(LAMMPS *lmp, int emit) : Pointers(lmp), emit(emit) {}
+DustShedding::~DustShedding() { memory->destroy(slot); }
+
+/* ----------------------------------------------------------------------
+   new atoms take the places of ghosts, whose contacts with their history LAMMPS must have put away by then
+------------------------------------------------------------------------- */
+
+void DustShedding::check_deck() const
+{
+  if (!emit) return;
+  if (domain->triclinic)
+    error->all(FLERR, "Fix dust/detach {} emit {} needs an orthogonal box: it is triclinic now", fix->id, emit);
+  bool after = false;
+  for (const auto &other : modify->get_fix_list()) {
+    if (other == fix) after = true;
+    if (after && utils::strmatch(other->style, "^NEIGH_HISTORY"))
+      error->all(FLERR, "The pair_style command must stand before fix {} (dust/detach) with emit", fix->id);
+  }
+}
 
 /* ---------------------------------------------------------------------- */
 
-double DustShedding::shed(double steps, const std::function<bool(int)> &carries)
+void DustShedding::take_off(int i, double mass, const double *momentum)
 {
-  const std::vector<Loss> all = of_all_ranks();
-  losses.clear();
+  const double before = atom->rmass[i], after = before - mass;
+  for (int d = 0; d < 3; d++) atom->v[i][d] = (before * atom->v[i][d] - momentum[d]) / after;
+  atom->rmass[i] = after;
+  changed = true;
+}
+
+void DustShedding::wait(int i, const Grain &grain) { list_of(i).grains.push_back(grain); }
+
+bool DustShedding::masses_changed()
+{
+  int any = changed;
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
+  changed = false;
+  return any;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DustShedding::emit_grains(const std::function<bool(int)> &ready)
+{
+  const std::vector<Candidate> all = gather(ready);
   if (all.empty()) return 0.0;
-  const std::vector<int> carrier = carriers_of(all, carries);
-  std::vector<char> leaves(all.size(), 0);
-  if (emit) {
-    find_room(all, steps, carrier, leaves);
-    MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_CHAR, MPI_MAX, world);
-    share_room(all, steps, leaves);
-  }
-  const double no_room = lighten(all, carrier, leaves);
-  if (!emit) return 0.0;
-  tagint tag = DustAtoms::highest_tag(lmp);
-  DustAtoms atoms(lmp);
-  for (size_t k = 0; k < all.size(); k++) {
-    if (!leaves[k]) continue;
-    double x[3];
-    place_of(all[k], steps, x);
-    atoms.create(emit, ++tag, x, all[k][LOSS_RADIUS], all[k][LOSS_MASS], &all[k][LOSS_V], &all[k][LOSS_SPIN]);
-  }
-  atoms.finish();
-  return no_room;
+  std::vector<DustRoom::Sphere> spheres;
+  for (const Candidate &c : all) spheres.push_back({{c.x[0], c.x[1], c.x[2]}, c.radius, tagint(c.carrier)});
+  const std::vector<int> room = DustRoom(lmp, std::move(spheres)).find();
+  const double back = send_back(all, room);
+  if (back < double(all.size())) create(all, room);
+  return back;
 }
 
-// on which atom of this rank each was, or -1
-std::vector<int> DustShedding::carriers_of(const std::vector<Loss> &all, const std::function<bool(int)> &carries) const
+/* ----------------------------------------------------------------------
+   Nothing moves, so the forces stay as they are, and so must the atoms' places in memory and on the ranks: they do not
+   change ranks here. The next step has to see to that.
+------------------------------------------------------------------------- */
+
+double DustShedding::emit_all()
 {
-  std::vector<int> carrier(all.size(), -1);
-  const auto by_carrier = [](const Loss &a, const Loss &b) { return a[CARRIER] < b[CARRIER]; };
+  const bigint before = atom->natoms;
+  const double back = emit_grains([](int) { return true; });
+  if (atom->natoms == before) return back;
+  comm->borders();
+  modify->pre_neighbor();
+  neighbor->build(1);
+  modify->post_neighbor();
+  return back;
+}
+
+/* ----------------------------------------------------------------------
+   of all ranks and on all, where they are now, in an order that does not depend on the number of ranks
+------------------------------------------------------------------------- */
+
+std::vector<DustShedding::Candidate> DustShedding::gather(const std::function<bool(int)> &ready)
+{
+  std::vector<Candidate> mine;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!carries(i)) continue;
-    Loss key = {};
-    key[CARRIER] = double(atom->tag[i]);
-    const auto range = std::equal_range(all.begin(), all.end(), key, by_carrier);
-    for (auto loss = range.first; loss != range.second; ++loss) carrier[loss - all.begin()] = i;
-  }
-  return carrier;
-}
-
-// takes mass and momentum of what leaves off the carriers of this rank; returns how many grains found no room
-double DustShedding::lighten(const std::vector<Loss> &all, const std::vector<int> &carrier,
-                             const std::vector<char> &leaves) const
-{
-  double no_room = 0.0;
-  for (size_t first = 0, last; first < all.size(); first = last) {
-    const int i = carrier[first];
-    double mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};    // of what leaves carrier i
-    for (last = first; last < all.size() && all[last][CARRIER] == all[first][CARRIER]; last++) {
-      if (i >= 0 && emit && !leaves[last]) no_room += 1.0;
-      if (emit && !leaves[last]) continue;
-      mass += all[last][LOSS_MASS];
-      for (int d = 0; d < 3; d++) momentum[d] += all[last][LOSS_MASS] * all[last][LOSS_V + d];
+    if (slot[i] < 0 || !ready(i)) continue;
+    for (const Grain &g : lists[slot[i]].grains) {
+      Candidate c = {double(atom->tag[i]), g.number, double(comm->me), double(i), g.mass, g.radius, {}, {}, {}};
+      for (int d = 0; d < 3; d++) c.x[d] = g.x[d] + (clock - g.time) * g.v[d];
+      std::copy_n(g.v, 3, c.v);
+      std::copy_n(g.spin, 3, c.spin);
+      mine.push_back(c);
     }
-    if (i < 0) continue;
-    const double rest = atom->rmass[i] - mass;
-    for (int d = 0; d < 3; d++) atom->v[i][d] = (atom->rmass[i] * atom->v[i][d] - momentum[d]) / rest;
-    atom->rmass[i] = rest;
+    drop(slot[i]);
+    slot[i] = NONE;
   }
-  return no_room;
-}
-
-// in free flight since it left, as it leaves its carrier's mass now
-void DustShedding::place_of(const Loss &loss, double steps, double *x) const
-{
-  const double flight = (steps - loss[LOSS_STEP]) * update->dt;
-  for (int d = 0; d < 3; d++) x[d] = loss[LOSS_X + d] + flight * loss[LOSS_V + d];
-}
-
-// of all ranks and on all, in an order that does not depend on their number
-std::vector<DustShedding::Loss> DustShedding::of_all_ranks() const
-{
-  std::vector<Loss> all = dust_gather(losses, ALL_RANKS, world);
-  std::sort(all.begin(), all.end());    // by carrier, then by grain
+  std::vector<Candidate> all = dust_gather(mine, ALL_RANKS, world);
+  std::sort(all.begin(), all.end(), [](const Candidate &a, const Candidate &b) {
+    return a.carrier != b.carrier ? a.carrier < b.carrier : a.number < b.number;
+  });
   return all;
 }
 
+// those without room, to the carriers; returns how many of this rank
+double DustShedding::send_back(const std::vector<Candidate> &all, const std::vector<int> &room)
+{
+  double back = 0.0;
+  for (size_t k = 0; k < all.size(); k++) {
+    if (room[k] || all[k].rank != comm->me) continue;
+    const double momentum[3] = {-all[k].mass * all[k].v[0], -all[k].mass * all[k].v[1], -all[k].mass * all[k].v[2]};
+    take_off(int(all[k].index), -all[k].mass, momentum);
+    back += 1.0;
+  }
+  return back;
+}
+
+void DustShedding::create(const std::vector<Candidate> &all, const std::vector<int> &room)
+{
+  const bigint wanted = std::count(room.begin(), room.end(), 1);
+  tagint tag = DustAtoms::highest_tag(lmp);
+  if (tag > MAXTAGINT - wanted) error->all(FLERR, "Fix dust/detach: no atom IDs are left for {} grains", wanted);
+  const int before = atom->nlocal;
+  DustAtoms atoms(lmp);
+  for (size_t k = 0; k < all.size(); k++)
+    if (room[k]) atoms.create(emit, ++tag, all[k].x, all[k].radius, all[k].mass, all[k].v, all[k].spin);
+  const bigint made = atoms.finish();
+  if (made != wanted) error->all(FLERR, "Fix dust/detach has emitted {} of {} grains only", made, wanted);
+  for (int i = before; i < atom->nlocal; i++) set_seen(i);
+  highest = tag;
+}
+
 /* ----------------------------------------------------------------------
-   grains of this rank's carriers that would overlap no other atom and lie in the box; walls are not known here
+   fix pour and fix deposit may count IDs on from where they began: what comes now can have one that was given here
 ------------------------------------------------------------------------- */
 
-void DustShedding::find_room(const std::vector<Loss> &all, double steps, const std::vector<int> &carrier,
-                             std::vector<char> &leaves) const
+void DustShedding::check_new_ids()
 {
-  // atoms along x, and those that some grain of a carrier could touch
-  std::vector<int> along(atom->nlocal + atom->nghost), near;
-  std::iota(along.begin(), along.end(), 0);
-  std::sort(along.begin(), along.end(), [this](int a, int b) { return atom->x[a][0] < atom->x[b][0]; });
-  const double largest = along.empty() ? 0.0 : *std::max_element(atom->radius, atom->radius + along.size());
-  for (size_t first = 0, last; first < all.size(); first = last) {
-    for (last = first + 1; last < all.size() && carrier[last] == carrier[first]; last++) {
-    }
-    const int i = carrier[first];
-    if (i < 0) continue;
+  std::vector<double> mine;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (slot[i] != UNSEEN) continue;
+    slot[i] = NONE;
+    if (atom->tag[i] <= highest) mine.push_back(double(atom->tag[i]));
+  }
+  if (highest == 0) return;
+  std::vector<double> suspects = dust_gather(mine, ALL_RANKS, world);
+  if (suspects.empty()) return;
+  std::sort(suspects.begin(), suspects.end());
+  std::vector<int> found(suspects.size(), 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto at = std::lower_bound(suspects.begin(), suspects.end(), double(atom->tag[i]));
+    if (at != suspects.end() && *at == double(atom->tag[i])) found[at - suspects.begin()]++;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_SUM, world);
+  const auto twice = std::find_if(found.begin(), found.end(), [](int n) { return n > 1; });
+  if (twice != found.end())
+    error->all(
+        FLERR,
+        "Fix dust/detach emit: a new atom has the ID {} of an emitted grain: use keyword id max with fix pour and "
+        "fix deposit",
+        tagint(suspects[twice - found.begin()]));
+}
 
-    const double *centre = atom->x[i];
-    std::vector<std::array<double, 3>> places(last - first);    // next to the carrier, whose image may have changed
-    double reach = 0.0;
-    for (size_t k = first; k < last; k++) {
-      double x[3], *place = places[k - first].data();
-      place_of(all[k], steps, x);
-      domain->closest_image(centre, x, place);
-      reach = std::max(reach, std::sqrt(distance2(centre, place)) + all[k][LOSS_RADIUS]);
-    }
-    const auto touches = [&](int j, const double *x, double radius) {
-      const double sum = atom->radius[j] + radius;
-      return distance2(atom->x[j], x) < sum * sum;
-    };
-    near.clear();
-    const double low = centre[0] - reach - largest, high = centre[0] + reach + largest;
-    auto j = std::lower_bound(along.begin(), along.end(), low, [this](int a, double x) { return atom->x[a][0] < x; });
-    for (; j != along.end() && atom->x[*j][0] <= high; ++j)
-      if (atom->tag[*j] != atom->tag[i] && touches(*j, centre, reach)) near.push_back(*j);
+/* ----------------------------------------------------------------------
+   per-atom data
+------------------------------------------------------------------------- */
 
-    for (size_t k = first; k < last; k++) {
-      const double *x = places[k - first].data();
-      const bool room = !DustAtoms::beyond_fixed_border(lmp, x) && std::none_of(near.begin(), near.end(), [&](int j) {
-        return touches(j, x, all[k][LOSS_RADIUS]);
-      });
-      leaves[k] = room;
+void DustShedding::grow(int nmax) { memory->grow(slot, nmax, "dust/detach:waiting"); }
+
+DustShedding::List &DustShedding::list_of(int i)
+{
+  if (slot[i] >= 0) return lists[slot[i]];
+  if (idle.empty()) {
+    idle.push_back(static_cast<int>(lists.size()));
+    lists.emplace_back();
+  }
+  slot[i] = idle.back();
+  idle.pop_back();
+  return lists[slot[i]];
+}
+
+void DustShedding::drop(int k)
+{
+  lists[k].grains.clear();
+  lists[k].from_file = false;
+  idle.push_back(k);
+}
+
+void DustShedding::drop_lost()
+{
+  if (idle.size() == lists.size()) return;
+  std::vector<bool> used(lists.size(), false);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (slot[i] >= 0) used[slot[i]] = true;
+  idle.clear();
+  for (size_t k = 0; k < used.size(); k++)
+    if (!used[k]) drop(static_cast<int>(k));
+}
+
+/* ----------------------------------------------------------------------
+   layout: number of waiting grains; if any, whether they come from a restart file, their carrier's place then, they
+------------------------------------------------------------------------- */
+
+void DustShedding::pack(int i, bool for_file, Dust::Packer &to) const
+{
+  if (slot[i] < 0) {
+    to.put(0.0);
+    return;
+  }
+  const List &list = lists[slot[i]];
+  to.put(double(list.grains.size()));
+  to.put(list.from_file || for_file);
+  double place[3] = {list.carrier[0], list.carrier[1], list.carrier[2]};
+  if (for_file && !list.from_file) unwrapped(i, place);
+  to.put(place, 3);
+  to.put(list.grains.data(), list.grains.size());
+}
+
+void DustShedding::unpack(int i, Dust::Unpacker &from)
+{
+  slot[i] = NONE;
+  const auto n = static_cast<size_t>(from.number());
+  if (n == 0) return;
+  if (!emit)
+    error->one(FLERR, "Fix dust/detach emit none: the restart file has {} grains of carrier {} that wait to be emitted",
+               n, atom->tag[i]);
+  List &list = list_of(i);
+  list.from_file = from.number() != 0.0;
+  from.get(list.carrier, 3);
+  list.grains.resize(n);
+  from.get(list.grains.data(), n);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DustShedding::follow_displaced()
+{
+  constexpr double ROUND_OFF = 1.0e-9;    // of the carrier's radius: other periodic images
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (slot[i] < 0 || !lists[slot[i]].from_file) continue;
+    List &list = lists[slot[i]];
+    list.from_file = false;
+    double now[3];
+    unwrapped(i, now);
+    for (int d = 0; d < 3; d++) {
+      const double shift = now[d] - list.carrier[d];
+      if (std::fabs(shift) < ROUND_OFF * atom->radius[i]) continue;
+      for (Grain &grain : list.grains) grain.x[d] += shift;
     }
   }
 }
 
-/* ----------------------------------------------------------------------
-   of grains that would overlap each other the first stays in the list: the same on all ranks. Neighbours along x.
-------------------------------------------------------------------------- */
+void DustShedding::unwrapped(int i, double *x) const { domain->unmap(atom->x[i], atom->image[i], x); }
 
-void DustShedding::share_room(const std::vector<Loss> &all, double steps, std::vector<char> &leaves) const
+/* ---------------------------------------------------------------------- */
+
+void DustShedding::set(const double *numbers)
 {
-  struct Place {
-    double x[3];
-    size_t number;
-  };
-  std::vector<Place> places;
-  double largest = 0.0;
-  for (size_t k = 0; k < all.size(); k++) {
-    if (!leaves[k]) continue;
-    Place place;
-    place.number = k;
-    place_of(all[k], steps, place.x);
-    domain->remap(place.x);
-    places.push_back(place);
-    largest = std::max(largest, all[k][LOSS_RADIUS]);
-  }
-  std::sort(places.begin(), places.end(), [](const Place &a, const Place &b) { return a.x[0] < b.x[0]; });
-  std::vector<std::pair<size_t, size_t>> pairs;    // that overlap, the first first
-  for (size_t a = 0; a < places.size(); a++)
-    for (size_t b = a + 1; b < places.size() && places[b].x[0] - places[a].x[0] < 2.0 * largest; b++) {
-      const size_t i = places[a].number, j = places[b].number;
-      const double sum = all[i][LOSS_RADIUS] + all[j][LOSS_RADIUS];
-      if (distance2(places[a].x, places[b].x) < sum * sum) pairs.emplace_back(std::minmax(i, j));
-    }
-  std::sort(pairs.begin(), pairs.end());
-  for (const auto &[first, second] : pairs)
-    if (leaves[first]) leaves[second] = 0;
+  clock = numbers[0];
+  highest = static_cast<tagint>(numbers[1]);
+}
+
+double DustShedding::memory_usage() const
+{
+  double bytes = double(atom->nmax) * sizeof(int);
+  for (const List &list : lists) bytes += sizeof(List) + double(list.grains.capacity()) * sizeof(Grain);
+  return bytes;
 }

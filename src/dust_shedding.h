@@ -7,44 +7,109 @@
 
 #include "pointers.h"
 
+#include "core/pack.h"
+
 #include <array>
 #include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
 
-// detached grains whose mass is still in their carrier's: it leaves at the end of the window, as atoms if asked for
+/* Grains that leave their carriers. Mass and momentum go in the step in which the grain does. To become an atom it waits
+   for a time at which LAMMPS can take one, and for the end of its carrier's collision. Until then it belongs to the data of
+   its carrier, whatever happens to that one, and flies freely from where it left. If there is no room for it then, it goes
+   back to its carrier. */
 
 class DustShedding : protected Pointers {
  public:
-  enum { CARRIER, GRAIN, LOSS_MASS, LOSS_RADIUS, LOSS_STEP, LOSS_X, LOSS_V = LOSS_X + 3, LOSS_SPIN = LOSS_V + 3 };
-  static constexpr int NLOSS = LOSS_SPIN + 3;
-  using Loss = std::array<double, NLOSS>;
+  // a grain that waits, as it was when it left
+  struct Grain {
+    double number;    // in the texture, from 1
+    double mass, radius;
+    double time;    // of now()
+    double x[3], v[3], spin[3];
+  };
 
-  // type of the atoms that grains become, or 0
-  DustShedding(class LAMMPS *, int emit);
+  // emit: type of the atoms that the grains of a fix become, or 0
+  DustShedding(class LAMMPS *, class Fix *, int emit);
+  ~DustShedding() override;
+  DustShedding(const DustShedding &) = delete;
+  DustShedding &operator=(const DustShedding &) = delete;
 
-  void add(const Loss &loss) { losses.push_back(loss); }
-  const std::vector<Loss> &of_this_rank() const { return losses; }
-  // of all ranks and on all, in an order that does not depend on their number
-  std::vector<Loss> of_all_ranks() const;
-  void set(std::vector<Loss> list) { losses = std::move(list); }
+  // stops if the deck stands in the way of emitted grains: before a run
+  void check_deck() const;
 
-  // all of them leave now. carries(i): whether atom i is a carrier. Returns how many of this rank found no room.
-  double shed(double steps, const std::function<bool(int)> &carries);
+  // time since the fix is there: the time step may change
+  double now() const { return clock; }
+  void pass(double dt) { clock += dt; }
 
-  double memory_usage() const { return double(losses.capacity()) * sizeof(Loss); }
+  // carrier i loses mass and momentum. Its velocity may be that of the half step: M v + (kicks to come) is conserved
+  void take_off(int i, double mass, const double *momentum);
+  // one of those grains becomes an atom later
+  void wait(int i, const Grain &);
+  // a carrier's mass has changed on some rank since this was asked last: ghosts must be told. All ranks ask.
+  bool masses_changed();
+  void mass_changed() { changed = true; }
+
+  // all ranks: the grains of those carriers become atoms or go back; ghosts are gone then. Returns how many of this rank
+  // went back. ready(i): whether carrier i has left its collision
+  double emit_grains(const std::function<bool(int)> &ready);
+  // the same for all of them at the end of a run: LAMMPS has ghosts and neighbours again
+  double emit_all();
+  // all ranks, after atoms have come: stops if one has the ID of an emitted grain
+  void check_new_ids();
+
+  // per-atom data
+  void grow(int nmax);
+  void copy(int i, int j) { slot[j] = slot[i]; }
+  void set_new(int i) { slot[i] = UNSEEN; }
+  bool is_new(int i) const { return slot[i] == UNSEEN; }
+  void set_seen(int i) { slot[i] = NONE; }
+  // lists of carriers that have left this rank or were deleted
+  void drop_lost();
+  void pack(int i, bool for_file, Dust::Packer &) const;
+  void unpack(int i, Dust::Unpacker &);
+  // a carrier that has been displaced since its restart file was written takes its grains along; once, before a run
+  void follow_displaced();
+
+  // what a restart file keeps of all ranks: numbers
+  static constexpr int SIZE = 2;
+  std::array<double, SIZE> numbers() const { return {clock, double(highest)}; }
+  void set(const double *numbers);
+
+  double memory_usage() const;
 
  private:
+  class Fix *fix;
   int emit;
-  std::vector<Loss> losses;
+  double clock;
+  bool changed;
+  tagint highest;    // ID of an atom made here
 
-  std::vector<int> carriers_of(const std::vector<Loss> &, const std::function<bool(int)> &carries) const;
-  double lighten(const std::vector<Loss> &, const std::vector<int> &carrier, const std::vector<char> &leaves) const;
-  void find_room(const std::vector<Loss> &, double steps, const std::vector<int> &carrier,
-                 std::vector<char> &leaves) const;
-  void share_room(const std::vector<Loss> &, double steps, std::vector<char> &leaves) const;
-  void place_of(const Loss &, double steps, double *) const;
+  // by atom: a list of waiting grains, or
+  enum { UNSEEN = -2, NONE = -1 };
+  int *slot;
+  struct List {
+    std::vector<Grain> grains;
+    bool from_file;       // and not in a run since
+    double carrier[3];    // where it was in the file, if so
+  };
+  std::vector<List> lists;
+  std::vector<int> idle;
+  List &list_of(int i);
+  void drop(int slot);
+
+  // a grain that wants to become an atom, known to all ranks; doubles only
+  struct Candidate {
+    double carrier, number;
+    double rank, index;    // of its carrier
+    double mass, radius;
+    double x[3], v[3], spin[3];
+  };
+  std::vector<Candidate> gather(const std::function<bool(int)> &ready);
+  double send_back(const std::vector<Candidate> &, const std::vector<int> &room);
+  void create(const std::vector<Candidate> &, const std::vector<int> &room);
+  void unwrapped(int i, double *x) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -4,7 +4,6 @@
 
 #include "fix_dust_detach.h"
 
-#include "core/jkr.h"
 #include "dust_atoms.h"
 #include "dust_gather.h"
 
@@ -12,19 +11,15 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_wall_gran.h"
-#include "force.h"
-#include "gran_sub_mod_normal.h"
-#include "granular_model.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
-#include "pair_granular.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -36,7 +31,7 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), carrier_radius(0.0),
     texture_checksum(0.0), state(nullptr), attached(nullptr), orientation(nullptr), angle(nullptr),
-    window_mass(nullptr), steps(0.0), began(nullptr), newcomers(true), mine{}, shedding(lmp, settings.emit),
+    window_mass(nullptr), steps(0.0), began(nullptr), newcomers(true), mine{}, shedding(lmp, this, settings.emit),
     exchange_room(0)
 {
   collisions.work.locate = settings.keep_rows || settings.lose_mass;
@@ -52,7 +47,8 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   size_local_cols = DetachRow::SIZE;
   restart_global = restart_peratom = create_attribute = 1;
   maxexchange_dynamic = 1;
-  force_reneighbor = settings.lose_mass;    // carriers get lighter and atoms are created where neighbour lists are new
+  comm_forward = settings.lose_mass;        // of the carriers' masses
+  force_reneighbor = settings.emit != 0;    // after a run has ended with new atoms
   next_reneighbor = -1;
   maxexchange = fixed_size() + 1;
 
@@ -104,6 +100,7 @@ void FixDustDetach::build()
   grow_arrays(atom->nmax);
   maxexchange = fixed_size() + 1 + exchange_room;
   adopt();
+  settings.save(texture);
 
   if (comm->me == 0) {
     utils::logmesg(
@@ -121,6 +118,7 @@ int FixDustDetach::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NE
 void FixDustDetach::init()
 {
   checks.before_run();
+  shedding.check_deck();
 
   if (functions) {
     const double radius = settings.carrier_radius(igroup);
@@ -160,6 +158,7 @@ void FixDustDetach::setup(int /*vflag*/)
     } else
       spin_off(i);
   }
+  if (settings.lose_mass) tell_ghosts();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -178,6 +177,9 @@ void FixDustDetach::post_neighbor()
     weigh();
   }
   drop_lost_collisions();
+  shedding.drop_lost();
+  if (settings.emit) shedding.check_new_ids();
+  if (settings.lose_mass) tell_ghosts();
   checks.tell();
 }
 
@@ -213,6 +215,7 @@ void FixDustDetach::weigh()
     if (state[i] == NO_CARRIER || began[i] != NOT_WEIGHED) continue;
     began[i] = 0.0;
     atom->rmass[i] += functions->grains() * functions->mean_mass();
+    shedding.mass_changed();
   }
 }
 
@@ -223,12 +226,9 @@ void FixDustDetach::weigh()
 void FixDustDetach::initial_integrate(int /*vflag*/)
 {
   steps += 1.0;
+  shedding.pass(update->dt);
   checks.step_begins();
 }
-
-/* ---------------------------------------------------------------------- */
-
-void FixDustDetach::post_run() { checks.tell(); }
 
 /* ----------------------------------------------------------------------
    here f holds contact forces only
@@ -284,13 +284,8 @@ void FixDustDetach::post_force(int /*vflag*/)
     }
   }
   if (spins && update->ntimestep % TURN_EVERY == 0) turn();
-  if (update->ntimestep % settings.every != 0) return;
-  if (rows.is_open()) close_window();
-  if (settings.lose_mass) {
-    int any = !shedding.of_this_rank().empty();
-    MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
-    if (any) next_reneighbor = update->ntimestep + 1;
-  }
+  if (rows.is_open() && update->ntimestep % settings.every == 0) close_window();
+  if (settings.lose_mass) tell_ghosts();
 }
 
 /* ----------------------------------------------------------------------
@@ -340,7 +335,7 @@ void FixDustDetach::collide(int i)
   }
   checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), functions->min_hold());
   const bool grows = !collision.weak() || settings.criteria.tangential == Dust::Criteria::INTEGRATE;
-  if (grows) make_exchange_room(collision);
+  if (grows) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
@@ -358,7 +353,7 @@ void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
   Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
   if (settings.rotation) now.turn_by(angle[i], 1.0);
   collisions[state[i]].begin(now, motion.spin);
-  make_exchange_room(collisions[state[i]]);
+  make_exchange_room(i);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -419,10 +414,11 @@ void FixDustDetach::drop_lost_collisions()
 
 void FixDustDetach::record(int i)
 {
-  const double half_kick = 0.5 * update->dt / atom->rmass[i];    // v is half a step behind
-  const double *x = atom->x[i], *v = atom->v[i], *f = atom->f[i];
+  // v is half a step behind, but not at the start of a run
+  const double half_kick = update->setupflag ? 0.0 : 0.5 * update->dt / atom->rmass[i];
+  const double *x = atom->x[i], *v = atom->v[i], *f = atom->f[i], *spin = atom->omega[i];
   const double velocity[3] = {v[0] + half_kick * f[0], v[1] + half_kick * f[1], v[2] + half_kick * f[2]};
-  double lost = 0.0;
+  double lost = 0.0, lost_mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
   for (const Dust::Detachment &d : collisions.work.detached) {
     mine.modes[d.mode] += 1.0;
     lost += functions->weight(d.bit);
@@ -435,12 +431,20 @@ void FixDustDetach::record(int i)
     if (settings.keep_rows)
       rows.add({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
                 place[0], place[1], place[2], speed[0], speed[1], speed[2]});
-    if (settings.lose_mass) {
-      const double *spin = atom->omega[i];
-      shedding.add({double(atom->tag[i]), number + 1.0, functions->weight(d.bit) * functions->mean_mass(), grain.radius,
-                    steps, place[0], place[1], place[2], speed[0], speed[1], speed[2], spin[0], spin[1], spin[2]});
-    }
+    if (!settings.lose_mass) continue;
+    const double mass = functions->weight(d.bit) * functions->mean_mass();
+    lost_mass += mass;
+    for (int k = 0; k < 3; k++) momentum[k] += mass * speed[k];
+    if (settings.emit)
+      shedding.wait(i, {number + 1.0,
+                        mass,
+                        grain.radius,
+                        shedding.now(),
+                        {place[0], place[1], place[2]},
+                        {speed[0], speed[1], speed[2]},
+                        {spin[0], spin[1], spin[2]}});
   }
+  if (settings.lose_mass) shedding.take_off(i, lost_mass, momentum);
   mine.weight += lost;
   array_atom[i][DetachAtom::ATTACHED] -= double(collisions.work.detached.size());
   array_atom[i][DetachAtom::MASS] += lost * functions->mean_mass();
@@ -539,25 +543,51 @@ double FixDustDetach::memory_usage()
 }
 
 /* ----------------------------------------------------------------------
-   what has been lost since the last window leaves the carriers' mass, as atoms if asked for
+   grains become atoms where LAMMPS builds neighbour lists anew, but not at the start of a run: one continued from a
+   restart file goes on as the one that wrote it
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::setup_pre_exchange()
 {
+  next_reneighbor = -1;
+  if (settings.emit) shedding.follow_displaced();
   share_exchange_room();
-  if (settings.lose_mass) shed();
 }
 
 void FixDustDetach::pre_exchange()
 {
+  if (settings.emit) mine.no_room += shedding.emit_grains([this](int i) { return state[i] < 0; });
   share_exchange_room();
-  if (settings.lose_mass && update->ntimestep == next_reneighbor) shed();
 }
 
-void FixDustDetach::shed()
+// whatever comes between two runs finds all grains as atoms
+void FixDustDetach::post_run()
 {
-  mine.no_room += shedding.shed(steps, [this](int i) { return (atom->mask[i] & groupbit) && state[i] != NO_CARRIER; });
+  if (settings.emit) {
+    mine.no_room += shedding.emit_all();
+    next_reneighbor = update->ntimestep + 1;
+  }
+  if (settings.lose_mass) tell_ghosts();
+  share_exchange_room();
+  checks.tell();
 }
+
+/* ----------------------------------------------------------------------
+   pair forces take the masses of ghosts, which LAMMPS sends when neighbour lists are built only
+------------------------------------------------------------------------- */
+
+void FixDustDetach::tell_ghosts()
+{
+  if (shedding.masses_changed()) comm->forward_comm(this);
+}
+
+int FixDustDetach::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
+{
+  for (int k = 0; k < n; k++) buf[k] = atom->rmass[list[k]];
+  return n;
+}
+
+void FixDustDetach::unpack_forward_comm(int n, int first, double *buf) { std::copy_n(buf, n, atom->rmass + first); }
 
 /* ----------------------------------------------------------------------
    per-atom data
@@ -565,6 +595,7 @@ void FixDustDetach::shed()
 
 void FixDustDetach::grow_arrays(int nmax)
 {
+  shedding.grow(nmax);
   memory->grow(state, nmax, "dust/detach:state");
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
   memory->grow(began, nmax, "dust/detach:began");
@@ -578,6 +609,7 @@ void FixDustDetach::grow_arrays(int nmax)
 
 void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
 {
+  shedding.copy(i, j);
   state[j] = state[i];
   window_mass[j] = window_mass[i];
   began[j] = began[i];
@@ -591,6 +623,7 @@ void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
 
 void FixDustDetach::set_arrays(int i)
 {
+  shedding.set_new(i);
   state[i] = NO_CARRIER;
   window_mass[i] = began[i] = 0.0;
   if (angle) std::fill_n(angle[i], 3, 0.0);
@@ -599,13 +632,13 @@ void FixDustDetach::set_arrays(int i)
 }
 
 /* ----------------------------------------------------------------------
-   layout: words of a texture or 0, state, columns, mass of the window, first contact, orientation and angle, bits,
-   collision
+   layout: words of a texture, state, columns, mass of the window, first contact, orientation and angle, bits, waiting
+   grains, collision; or 0, NEWCOMER
 ------------------------------------------------------------------------- */
 
 int FixDustDetach::fixed_size() const
 {
-  return 2 + DetachAtom::SIZE + 2 + orientation_size() + (functions ? functions->words() : 0);
+  return 2 + DetachAtom::SIZE + 2 + 1 + orientation_size() + (functions ? functions->words() : 0);
 }
 
 bool FixDustDetach::oriented() const { return settings.rotation || !settings.same_orientation(); }
@@ -613,10 +646,11 @@ bool FixDustDetach::oriented() const { return settings.rotation || !settings.sam
 int FixDustDetach::orientation_size() const { return settings.rotation ? 7 : oriented() ? 4 : 0; }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
-void FixDustDetach::make_exchange_room(const Dust::Collision &collision)
+void FixDustDetach::make_exchange_room(int i)
 {
-  if (collision.packed_size() <= exchange_room) return;
-  exchange_room = 2 * collision.packed_size();
+  const int needed = packed_size(i) - fixed_size();
+  if (needed <= exchange_room) return;
+  exchange_room = 2 * needed;
   maxexchange = fixed_size() + 1 + exchange_room;
 }
 
@@ -629,68 +663,73 @@ void FixDustDetach::share_exchange_room()
 
 int FixDustDetach::packed_size(int i) const
 {
-  if (state[i] == NO_CARRIER) return 1;
-  return fixed_size() + (state[i] >= 0 ? collisions[state[i]].packed_size() : 0);
+  Dust::Packer counter;
+  pack(i, false, counter);
+  return counter.size();
 }
 
-int FixDustDetach::pack(int i, double *buf) const
+void FixDustDetach::pack(int i, bool for_file, Dust::Packer &to) const
 {
   if (state[i] == NO_CARRIER) {
-    buf[0] = 0.0;
-    return 1;
+    to.put(shedding.is_new(i) ? NEWCOMER : 0.0);
+    return;
   }
   const int words = functions->words();
-  double *p = buf;
-  *p++ = words;
-  *p++ = state[i] >= 0 ? 0 : state[i];
-  p = std::copy_n(array_atom[i], static_cast<int>(DetachAtom::SIZE), p);
-  *p++ = window_mass[i];
-  *p++ = began[i];
-  if (orientation) p = std::copy_n(orientation[i].q, 4, p);
-  if (angle) p = std::copy_n(angle[i], 3, p);
-  std::memcpy(p, attached[i], words * sizeof(uint64_t));
-  p += words;
-  if (state[i] >= 0) {
-    Dust::Packer packer(p);
-    collisions[state[i]].pack(packer);
-    p += packer.size();
-  }
-  return static_cast<int>(p - buf);
+  to.put(words);
+  to.put(state[i] >= 0 ? 0 : state[i]);
+  to.put(array_atom[i], DetachAtom::SIZE);
+  to.put(window_mass[i]);
+  to.put(began[i]);
+  if (orientation) to.put(&orientation[i], 1);
+  if (angle) to.put(angle[i], 3);
+  to.put(attached[i], words);
+  shedding.pack(i, for_file, to);
+  if (state[i] >= 0) collisions[state[i]].pack(to);
 }
 
 void FixDustDetach::unpack(int i, const double *buf)
 {
   set_arrays(i);
-  const double *p = buf;
-  const int words = static_cast<int>(*p++);
-  if (words == 0) return;
+  Dust::Unpacker from(buf);
+  const int words = static_cast<int>(from.number());
+  if (words != NEWCOMER) shedding.set_seen(i);
+  if (words <= 0) return;
   if (!functions || words != functions->words())
     error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
-  state[i] = static_cast<int>(*p++);
-  std::copy_n(p, static_cast<int>(DetachAtom::SIZE), array_atom[i]);
-  p += DetachAtom::SIZE;
-  window_mass[i] = *p++;
-  began[i] = *p++;
+  state[i] = static_cast<int>(from.number());
+  from.get(array_atom[i], DetachAtom::SIZE);
+  window_mass[i] = from.number();
+  began[i] = from.number();
   rows.open();
-  if (orientation) std::copy_n(p, 4, orientation[i].q);
-  if (angle) std::copy_n(p + 4, 3, angle[i]);
-  p += orientation_size();
-  std::memcpy(attached[i], p, words * sizeof(uint64_t));
-  p += words;
+  if (orientation) from.get(&orientation[i], 1);
+  if (angle) from.get(angle[i], 3);
+  from.get(attached[i], words);
+  shedding.unpack(i, from);
   if (state[i] == 0) {
     state[i] = collisions.take();
-    Dust::Unpacker unpacker(p);
-    collisions[state[i]].unpack(unpacker);
-    make_exchange_room(collisions[state[i]]);
+    collisions[state[i]].unpack(from);
   }
+  make_exchange_room(i);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   LAMMPS wants the size first
+------------------------------------------------------------------------- */
 
 int FixDustDetach::pack_exchange(int i, double *buf)
 {
-  buf[0] = packed_size(i) + 1;
-  return pack(i, buf + 1) + 1;
+  Dust::Packer to(buf + 1);
+  pack(i, false, to);
+  buf[0] = to.size() + 1;
+  return to.size() + 1;
+}
+
+int FixDustDetach::pack_restart(int i, double *buf)
+{
+  Dust::Packer to(buf + 1);
+  pack(i, true, to);
+  buf[0] = to.size() + 1;
+  return to.size() + 1;
 }
 
 int FixDustDetach::unpack_exchange(int nlocal, double *buf)
@@ -700,36 +739,27 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   restart: totals, the rows of two windows and losses; per carrier what a migrating carrier takes along
+   restart: totals and the rows of two windows; per carrier what a migrating carrier takes along
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::write_restart(FILE *fp)
 {
   std::vector<double> list = {texture_checksum, double(orientation_size()), double(settings.lose_mass), steps};
-  const DetachTotals total = mine.sum(world);
-  list.insert(list.end(), total.numbers(), total.numbers() + DetachTotals::SIZE);
+  for (double number : shedding.numbers()) list.push_back(number);
+  for (double number : mine.sum(world).numbers()) list.push_back(number);
   // LAMMPS counts the bytes of a fix's restart data as int
   constexpr double MOST = 2.0e9;
-  double bytes[2] = {double(rows.present().size() + rows.last().size()) * sizeof(DetachmentRows::Row),
-                     double(shedding.of_this_rank().size()) * sizeof(DustShedding::Loss)};
-  MPI_Allreduce(MPI_IN_PLACE, bytes, 2, MPI_DOUBLE, MPI_SUM, world);
-  if (bytes[1] > MOST)
-    error->all(
-        FLERR,
-        "Fix dust/detach {}: a restart file cannot hold the {} grains that are to leave their carriers' mass: use a "
-        "smaller every",
-        id, bytes[1] / sizeof(DustShedding::Loss));
-  const bool fits = bytes[0] + bytes[1] < MOST;
+  double bytes = double(rows.present().size() + rows.last().size()) * sizeof(DetachmentRows::Row);
+  MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_SUM, world);
+  const bool fits = bytes < MOST;
   if (!fits && comm->me == 0)
     error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id,
-                   bytes[0] / sizeof(DetachmentRows::Row));
-  const auto append = [&list](const auto &records) {
-    list.push_back(double(records.size()));
-    for (const auto &record : records) list.insert(list.end(), record.begin(), record.end());
-  };
-  for (const auto *window : {&rows.present(), &rows.last()})
-    append(fits ? dust_gather(*window, 0, world) : std::vector<DetachmentRows::Row>());
-  append(shedding.of_all_ranks());
+                   bytes / sizeof(DetachmentRows::Row));
+  for (const auto *window : {&rows.present(), &rows.last()}) {
+    const auto all = fits ? dust_gather(*window, 0, world) : std::vector<DetachmentRows::Row>();
+    list.push_back(double(all.size()));
+    for (const auto &row : all) list.insert(list.end(), row.begin(), row.end());
+  }
   if (comm->me == 0) {
     const int size = static_cast<int>(list.size() * sizeof(double));
     fwrite(&size, sizeof(int), 1, fp);
@@ -750,29 +780,22 @@ void FixDustDetach::restart(char *buf)
     error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}", *p != 0.0 ? "yes" : "no");
   p++;
   steps = *p++;
+  shedding.set(p);
+  p += DustShedding::SIZE;
   mine = DetachTotals{};
   std::vector<DetachmentRows::Row> present, last;
-  std::vector<DustShedding::Loss> losses;
   if (comm->me == 0) {
     mine = DetachTotals::from(p);
     p += DetachTotals::SIZE;
-    const auto take = [&p](auto &records) {
-      records.resize(static_cast<size_t>(*p++));
-      std::memcpy(records.data(), p, records.size() * sizeof(records[0]));
-      p += records.size() * sizeof(records[0]) / sizeof(double);
-    };
-    for (auto *window : {&present, &last}) take(*window);
-    take(losses);
+    for (auto *window : {&present, &last}) {
+      window->resize(static_cast<size_t>(*p++));
+      std::memcpy(window->data(), p, window->size() * sizeof(DetachmentRows::Row));
+      p += window->size() * DetachRow::SIZE;
+    }
   }
   rows.set(std::move(present), std::move(last));
-  shedding.set(std::move(losses));
   show_rows();
   newcomers = true;
-}
-
-int FixDustDetach::pack_restart(int i, double *buf)
-{
-  return pack_exchange(i, buf);    // LAMMPS wants the size first, too
 }
 
 void FixDustDetach::unpack_restart(int i, int nth)

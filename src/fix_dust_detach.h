@@ -14,6 +14,7 @@ FixStyle(dust/detach,FixDustDetach);
 #include "fix.h"
 
 #include "core/collision_pool.h"
+#include "core/pack.h"
 #include "deck_checks.h"
 #include "detach_settings.h"
 #include "detach_totals.h"
@@ -49,6 +50,8 @@ class FixDustDetach : public Fix {
   void set_arrays(int) override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
 
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -104,18 +107,19 @@ class FixDustDetach : public Fix {
   void close_window();
   void show_rows();
 
-  // mass and grains that are still to leave
+  // mass and grains that leave
   DustShedding shedding;
-  void shed();
+  void tell_ghosts();
 
-  int exchange_room;    // for a collision in what a carrier takes along when it changes ranks
-  void make_exchange_room(const Dust::Collision &);
+  int exchange_room;    // for a collision and waiting grains in what a carrier takes along when it changes ranks
+  void make_exchange_room(int);
   void share_exchange_room();
   int fixed_size() const;
   bool oriented() const;
   int orientation_size() const;
   int packed_size(int) const;
-  int pack(int, double *) const;
+  static constexpr int NEWCOMER = -1;    // in what an atom that is no carrier takes along
+  void pack(int, bool, Dust::Packer &) const;
   void unpack(int, const double *);
 };
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 using namespace LAMMPS_NS;
 using namespace Granular_NS;

@@ -6,6 +6,7 @@
 
 #include "core/hamaker.h"
 #include "core/jkr.h"
+#include "core/overlap_rate.h"
 
 #include "error.h"
 #include "force.h"
@@ -18,10 +19,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 using namespace LAMMPS_NS;
 using namespace Granular_NS;
 
+// places in the history after the neck's
+static constexpr int PLACE_OF_ROLLING = 1, PLACE_OF_RATE = 4;
 static constexpr double CUTOFF = 10.0;    // of the attraction, in z0: a hundredth of the pull-off force is left there
 
 /* ---------------------------------------------------------------------- */
@@ -39,8 +43,9 @@ GranSubModNormalJKRVdWCut::GranSubModNormalJKRVdWCut(GranularModel *gm, LAMMPS *
 }
 
 /* ----------------------------------------------------------------------
-   Neck and rolling displacement are kept at the end of the history, in the place of the heat model, the last one: there they
-   move no value of other models in the same pair style, which LAMMPS would then copy wrongly when i and j change places.
+   Neck, rolling displacement and rate of the overlap are kept at the end of the history, in the place of the heat model, the
+   last one: there they move no value of other models in the same pair style, which LAMMPS would then copy wrongly when i and j
+   change places.
 ------------------------------------------------------------------------- */
 
 void GranSubModNormalJKRVdW::init()
@@ -49,13 +54,15 @@ void GranSubModNormalJKRVdW::init()
   if (damping == "velocity" || damping == "mass_velocity")
     error->all(FLERR, "Normal model {} cannot use damping {}, which acts without a neck: use viscoelastic", name,
                damping);
-  gm->heat_model->size_history = 4;
+  gm->heat_model->size_history = PLACE_OF_RATE + 3;
   gm->size_history = 0;
   for (const GranSubMod *model : gm->sub_models) gm->size_history += model->size_history;
   laid_out = -1;
 }
 
 int GranSubModNormalJKRVdW::neck_place() const { return gm->heat_model->history_index; }
+
+double *GranSubModNormalJKRVdW::rolling_in(double *history) const { return history + neck_place() + PLACE_OF_ROLLING; }
 
 /* ----------------------------------------------------------------------
    When i and j change places, LAMMPS copies as many values as this model has, but keeps room for the largest sub-model of
@@ -194,16 +201,42 @@ double GranSubModNormalJKRVdW::calculate_contact_radius()
   neck = gm->delta >= 0.0 || (kept != 0.0 && gm->delta > -delta_c);
   x = neck ? Dust::jkr_contact_radius(gm->delta / delta_c, kept) : 0.0;
 
+  const double before = kept;
   if (gm->history_update) {
-    if (neck != (kept != 0.0)) last_events.neck = update->ntimestep;
+    if (neck != (before != 0.0)) last_events.neck = update->ntimestep;
     // nothing is remembered of before the neck: stock models sum up their displacements all the time
-    const double before = kept;
     if (!neck || before == 0.0)
       for (const GranSubMod *model : gm->sub_models)
         std::fill_n(gm->history + model->history_index, model->size_history, 0.0);
     kept = std::copysign(x, before);
   }
+  if (neck) use_overlap_rate(before == 0.0);
   return x * a0;
+}
+
+/* ----------------------------------------------------------------------
+   Damping models take the velocity at which the surfaces part from gm->vnnr: give them that of this step. The rate is even
+   under a swap of i and j, so it is kept times the sign of the neck. Where history must not change, in setup and for output,
+   that of the last step is used again; a new neck has none yet, and LAMMPS' velocity serves.
+------------------------------------------------------------------------- */
+
+void GranSubModNormalJKRVdW::use_overlap_rate(bool anew)
+{
+  double *kept = gm->history + laid_out + PLACE_OF_RATE;
+  const double sign = std::copysign(1.0, gm->history[laid_out]), decay = damp * x * a0;
+  Dust::OverlapRate now = {sign * kept[0], sign * kept[1], sign * kept[2]};
+  if (!gm->history_update) {
+    if (!anew) gm->vnnr = -now.rate;
+    return;
+  }
+  if (anew)
+    now.begin(gm->delta, -gm->vnnr, decay, update->dt);
+  else
+    now.advance(gm->delta, decay, update->dt);
+  kept[0] = sign * now.overlap;
+  kept[1] = sign * now.coasting;
+  kept[2] = sign * now.rate;
+  gm->vnnr = -now.rate;
 }
 
 /* ---------------------------------------------------------------------- */

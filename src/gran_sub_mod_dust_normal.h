@@ -49,7 +49,7 @@ class GranSubModNormalJKRVdW : public GranSubModNormal {
   // places
   double neck_in(const double *history) const { return history[neck_place()]; }
   // three values that a rolling model may keep in this history
-  double *rolling_in(double *history) const { return history + neck_place() + 1; }
+  double *rolling_in(double *history) const;
 
  private:
   double hamaker, z0, z_cut, range, gamma, modulus;
@@ -66,6 +66,7 @@ class GranSubModNormalJKRVdW : public GranSubModNormal {
   int laid_out;
   int neck_place() const;
   void lay_out_history();
+  void use_overlap_rate(bool);
 };
 
 // the same with the end of the attraction as a coefficient

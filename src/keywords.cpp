@@ -18,12 +18,13 @@ static constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
 /* ---------------------------------------------------------------------- */
 
-Range Range::any() { return {-INFINITE, INFINITE, false, false}; }
-Range Range::above(double low) { return {low, INFINITE, false, false}; }
-Range Range::at_least(double low) { return {low, INFINITE, true, false}; }
-Range Range::from_to(double low, double high) { return {low, high, true, true}; }
-Range Range::at_most(double most) const { return {low, most, with_low, true}; }
-Range Range::below(double most) const { return {low, most, with_low, false}; }
+Range Range::any() { return {-INFINITE, INFINITE, false, false, ""}; }
+Range Range::above(double low) { return {low, INFINITE, false, false, ""}; }
+Range Range::at_least(double low) { return {low, INFINITE, true, false, ""}; }
+Range Range::from_to(double low, double high) { return {low, high, true, true, ""}; }
+Range Range::at_most(double most) const { return {low, most, with_low, true, units}; }
+Range Range::below(double most) const { return {low, most, with_low, false, units}; }
+Range Range::in(const std::string &their_units) const { return {low, high, with_low, with_high, their_units}; }
 
 bool Range::holds(double x) const
 {
@@ -32,12 +33,13 @@ bool Range::holds(double x) const
 
 std::string Range::text() const
 {
-  if (with_low && with_high) return fmt::format("from {:g} to {:g}", low, high);
+  const std::string end = units.empty() ? "" : " " + units;
+  if (with_low && with_high) return fmt::format("from {:g} to {:g}{}", low, high, end);
   std::string words;
   if (low != -INFINITE) words = fmt::format("{} {:g}", with_low ? "at least" : "above", low);
   if (high != INFINITE)
     words += fmt::format("{}{} {:g}", words.empty() ? "" : " and ", with_high ? "at most" : "below", high);
-  return words.empty() ? "a number" : words;
+  return (words.empty() ? "a number" : words) + end;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -32,12 +32,14 @@ struct Range {
   static Range from_to(double low, double high);
   Range at_most(double high) const;
   Range below(double high) const;
+  Range in(const std::string &units) const;    // to be named with the range
 
   bool holds(double) const;
   std::string text() const;    // as in "must be ...": "above 0 and at most 1"
 
   double low, high;
   bool with_low, with_high;
+  std::string units;
 };
 
 // goes over the words of a command: keywords, each followed by its values. A wrong word ends in one line that names the

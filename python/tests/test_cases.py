@@ -94,6 +94,57 @@ def test_toml_mistakes_are_named(tmp_path, text, words):
     assert str(path) in str(refusal.value)
 
 
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "speed: missing"),
+        (b"speed = 2 # \xe9", "not a text in UTF-8 (byte 13)"),
+        ("speed = 2".encode("utf-16"), "not a text in UTF-8"),
+        pytest.param(b"speed = " + b"[" * 3000 + b"]" * 3000, "nested too deeply", id="lists nested 3000 deep"),
+        pytest.param(
+            b"speed = " + b"{a=" * 3000 + b"1" + b"}" * 3000, "nested too deeply", id="tables nested 3000 deep"
+        ),
+        pytest.param(b"speed = " + b"1" * 5000, "a number of too many digits", id="5000 digits"),
+        pytest.param(b"speed = " + b"1" * 4000, "--speed: 11111", id="4000 digits"),
+        (b"speed = 1e400", "--speed: inf is not a finite number"),
+        (b"speed = 1979-05-27", "--speed: datetime.date(1979, 5, 27) is not a finite number"),
+        (b"speed = true", "--speed: True is not a number"),
+        (b"speed = [[2, 3]]", "--speed: [2, 3] is not a finite number"),
+        (b"speed = {of = 2}", "--speed: {'of': 2} is not a finite number"),
+        pytest.param(b"a" * 100_000 + b" = 2", "aaa: unknown key", id="a long key"),
+        (b'"a\\nb" = 2', "a\\nb: unknown key"),
+        (
+            b"speed = 2\nseed = [" + b"1," * 2000 + b"]\nfriction = [" + b"1," * 1000 + b"]",
+            "2000000 cases; allowed: at",
+        ),
+        (b"speed = 2\nrotation = [true, false]\nmethod = 'resolved'", "--rotation: false"),
+    ],
+)
+def test_files_that_are_no_sweep_are_named(tmp_path, content, words):
+    path = tmp_path / "sweep.toml"
+    path.write_bytes(content)
+    with pytest.raises(InvalidInput) as refusal:
+        read_cases(str(path))
+    message = str(refusal.value)
+    assert message.startswith(f"{path}: ")
+    assert words in message
+    assert "\n" not in message
+    assert len(message) < 600
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("folder", "Is a directory"), ("loop", "Too many levels of symbolic links"), ("line\nbreak", "no such file")],
+)
+def test_what_is_no_file_is_named(tmp_path, name, words):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "loop").symlink_to("loop")
+    with pytest.raises(InvalidInput) as refusal:
+        read_cases(tmp_path / name)
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
 def test_methods_of_a_sweep():
     slow, fast = Impact(speed=2), Impact(speed=4)
     resolved = [Impact(speed=v, method="resolved") for v in (2, 4)]

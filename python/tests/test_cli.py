@@ -1,6 +1,9 @@
 """The command: what it prints, and that bad input is one line, exit status 2 and nothing written."""
 
+import functools
 import json
+import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -173,8 +176,8 @@ def test_what_lammps_refuses(command, tmp_path):
         (("texture", "make", "--coverage", "0.7", "--out", "t"), "--coverage: 0.7 is out of range"),
         (("texture", "make", "--out", "no/such/t"), "--out: there is no folder no/such"),
         (("texture", "make", "--out", "."), "--out: . is a folder"),
-        (("texture", "check", "nowhere"), "nowhere: No such file"),
-        (("texture", "draw", "nowhere", "--out", "t.png"), "nowhere: No such file"),
+        (("texture", "check", "nowhere"), "nowhere: it cannot be read: No such file"),
+        (("texture", "draw", "nowhere", "--out", "t.png"), "nowhere: it cannot be read: No such file"),
         (("conjure",), "invalid choice: 'conjure'"),
         ((), "required: COMMAND"),
     ],
@@ -232,6 +235,41 @@ def test_the_mpi_executor_says_what_it_needs(command, tmp_path, monkeypatch):
     process = command("sweep", "figure4", "--out", "out", "--executor", "mpi")
     assert_one_line(process, "--executor mpi needs mpi4py", status=1)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_full_disk_behind_the_output(command, monkeypatch, unbuffered):
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    with open("/dev/full", "w") as full:
+        process = command(*IMPACT, "--json", stdout=full)
+    assert process.returncode == 1
+    assert process.stderr == "dustdetach impact: standard output: No space left on device\n"
+
+
+def test_a_full_disk_behind_a_picture(command, tmp_path, monkeypatch):
+    # no room for the files of MPI, which would end the process on its own
+    limit = functools.partial(resource.setrlimit, resource.RLIMIT_FSIZE, (100_000, 100_000))
+    process = command(*IMPACT, "--picture", "x.png", preexec_fn=limit)
+    assert_one_line(process, "File too large", status=1)
+    assert "TMPDIR may name another folder" in process.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_names_of_files_need_not_be_text(command, tmp_path):
+    name = os.fsdecode(b"caf\xe9")
+    (tmp_path / "sweep.toml").write_text("speed = 2\n")
+    process = command("sweep", "sweep.toml", "--out", name, encoding="utf-8", errors="surrogateescape")
+    assert process.returncode == 0, process.stderr
+    assert process.stdout == f"{name}/results.csv\n"
+    assert_one_line(command("plot", name), "caf\\udce9/results.csv: no curve to draw")
+
+
+def test_a_name_of_two_lines_is_said_on_one(command, tmp_path):
+    process = command("sweep", "two\nlines.toml", "--out", "out")
+    assert process.stderr.startswith("dustdetach sweep: two\\nlines.toml: no such file")
+    assert_one_line(process, "no such file")
+    assert_one_line(command(*IMPACT, "two\nlines"), "unrecognized arguments: two\\nlines")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_help_and_version(command):

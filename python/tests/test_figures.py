@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from matplotlib import pyplot as plt
 
-from dustdetach import InvalidInput, read_csv
+from dustdetach import InvalidInput, MachineFault, read_csv
 from dustdetach.figures import COLOURS, draw, plot
 from dustdetach.result import write_csv
 
@@ -75,6 +75,47 @@ def test_one_speed_makes_no_curve(figures_folder, tmp_path):
     write_csv(tmp_path / "results.csv", [row for row in read_csv(figures_folder / "results.csv") if row.speed == 4])
     with pytest.raises(InvalidInput, match="at least two speeds are needed"):
         plot(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"speed": -1.0}, "speed: -1 is out of range"),
+        ({"speed": 1e308}, "speed: 1e+308 is out of range; allowed: above 0 and at most 100"),
+        ({"north": 1.5}, "north: 1.5 is out of range; allowed: 0 to 1"),
+        ({"dispersion_ratio": -1e300}, "dispersion_ratio: -1e+300 is out of range"),
+    ],
+)
+def test_numbers_that_no_impact_has_are_named(figures_folder, tmp_path, change, words):
+    first, *others = read_csv(figures_folder / "results.csv")
+    write_csv(tmp_path / "results.csv", [replace(first, **change), *others])
+    with pytest.raises(InvalidInput) as refusal:
+        plot(str(tmp_path))
+    assert str(refusal.value).startswith(f"{tmp_path / 'results.csv'}: {words}")
+    assert [path.name for path in tmp_path.iterdir()] == ["results.csv"]
+
+
+@pytest.mark.parametrize("folder", ["nowhere", "loop", "a\nb"])
+def test_folders_without_a_table_are_named(tmp_path, folder):
+    (tmp_path / "loop").symlink_to("loop")
+    with pytest.raises(InvalidInput, match=r"results\.csv: no such file"):
+        plot(str(tmp_path / folder))
+
+
+def test_a_figure_that_cannot_be_replaced_is_named(figures_folder, tmp_path):
+    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    (tmp_path / "figure4.svg").mkdir()
+    with pytest.raises(InvalidInput) as refusal:
+        draw(rows, tmp_path / "figure4")
+    assert str(refusal.value).startswith(f"{tmp_path / 'figure4.svg'}: ")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure4.png", "figure4.svg"]
+
+
+def test_a_full_disk_leaves_no_half_figure(figures_folder, tmp_path, largest_file):
+    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    with largest_file(1000), pytest.raises(MachineFault, match=r"figure4\.png: File too large"):
+        draw(rows, tmp_path / "figure4")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_broken_tables_are_named(tmp_path, figures_folder):

@@ -53,3 +53,18 @@ def test_broken_frames_are_named(tmp_path, old, new, words):
         read_frames(path, [0])
     assert words in str(refusal.value)
     assert str(path) in str(refusal.value)
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"ITEM: TIMESTEP\n0\nITEM", b"ITEM: TIMESTEP\nzero\n"])
+def test_files_without_frames_are_named(tmp_path, content):
+    path = tmp_path / "frames"
+    path.write_bytes(content)
+    for read in (frame_sizes, lambda path: read_frames(path, [0])):
+        with pytest.raises(InvalidInput) as refusal:
+            read(path)
+        assert str(refusal.value).startswith(f"{path}: ")
+
+
+def test_a_folder_holds_no_frames(tmp_path):
+    with pytest.raises(InvalidInput, match="Is a directory"):
+        frame_sizes(str(tmp_path))

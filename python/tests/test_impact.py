@@ -1,11 +1,15 @@
 """Ranges of an impact's parameters and what follows from them."""
 
 import math
+import random
+from decimal import Decimal
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from dustdetach import Impact, InvalidInput
+from dustdetach.impact import METHODS, PARAMETER_TYPES
 
 
 def test_the_reference_case_has_4500_grains():
@@ -13,8 +17,35 @@ def test_the_reference_case_has_4500_grains():
 
 
 def test_numbers_of_any_kind_become_plain_ones():
-    impact = Impact(speed=np.float32(4), seed=np.int64(3), angle=60)
-    assert (type(impact.speed), type(impact.seed), type(impact.angle)) == (float, int, float)
+    impact = Impact(
+        speed=np.float32(4),
+        seed=np.int64(3),
+        angle=60,
+        rotation=np.False_,
+        method=np.str_("functions"),
+        z0=np.array(4e-10),
+    )
+    assert [type(value) for value in (impact.speed, impact.seed, impact.angle)] == [float, int, float]
+    assert [type(value) for value in (impact.rotation, impact.method, impact.z0)] == [bool, str, float]
+    assert Impact(speed=Decimal("4.5"), seed=Fraction(3)) == Impact(speed=4.5, seed=3)
+
+
+def test_extreme_numbers_are_refused_or_taken_but_no_puzzle():
+    chance = random.Random(1)
+    numbers = (5e-324, 1e-300, 1e-61, 1e-60, 1e-30, 1e-10, 1e-3, 0.5, 1, math.pi, 90, 100, 1e15, 1e300, -1, 0, -0.0)
+    names = [name for name, kind in PARAMETER_TYPES.items() if kind == "float"]
+    for _ in range(5000):
+        values = {name: chance.choice(numbers) for name in names if chance.random() < 0.3}
+        try:
+            Impact(**{"speed": 4.0, "method": chance.choice(METHODS), **values})
+        except InvalidInput as refusal:
+            assert str(refusal).startswith("--")
+
+
+@pytest.mark.parametrize("values", [None, "speed", ["speed"], {3: 4}, {"speed\n": 4}])
+def test_mappings_that_are_none(values):
+    with pytest.raises(InvalidInput):
+        Impact.from_mapping(values)
 
 
 @pytest.mark.parametrize(
@@ -50,6 +81,18 @@ def test_numbers_of_any_kind_become_plain_ones():
         ("timestep", 0, "above 0 and at most 1e-07 s"),
         ("speed", "4", "not a number"),
         ("speed", True, "not a number"),
+        ("speed", np.True_, "not a number"),
+        ("speed", b"4", "not a number"),
+        ("speed", np.array([4.0]), "not a number"),
+        ("speed", [4.0, [2.0]], "not a finite number"),
+        ("speed", 4j, "not a finite number"),
+        ("speed", None, "not a finite number"),
+        pytest.param("speed", 10**5000, "not a finite number", id="5000 digits"),
+        ("speed", 1e-300, "at least 1e-60"),
+        ("carrier_diameter", 1e-300, "at least 1e-60"),
+        pytest.param("seed", 10**400, "not a finite number", id="400 digits"),
+        ("method", 3, "not a word"),
+        pytest.param("method", "a\nb" * 1000, "functions, resolved", id="a long word"),
     ],
 )
 def test_out_of_range(name, value, allowed):

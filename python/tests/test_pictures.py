@@ -1,12 +1,13 @@
 """Pictures of carriers, drawn by LAMMPS."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
-from dustdetach import Impact, InvalidInput
+from dustdetach import Impact, InvalidInput, MachineFault
 from dustdetach import pictures as module
 from dustdetach.pictures import draw_impact, draw_moments, draw_texture, read_fates
 from dustdetach.texture import make_texture, read_texture
@@ -66,6 +67,62 @@ def test_an_event_of_a_grain_that_is_not_there(tmp_path):
     (tmp_path / "events").write_text("ITEM: ENTRIES step carrier grain mode\n5 1 7 1\n")
     with pytest.raises(InvalidInput, match="an event of grain 7"):
         read_fates(tmp_path / "events", 6)
+
+
+@pytest.mark.parametrize("line", ["5 1 2", "5 1 2 9 1e-5", "5 1 2 nan", "5 1 two 1", "5 1 inf 1"])
+def test_an_event_that_is_none(tmp_path, line):
+    (tmp_path / "events").write_text(f"ITEM: ENTRIES step carrier grain mode\n{line}\n")
+    with pytest.raises(InvalidInput, match="is no event: the file is cut, or another one"):
+        read_fates(str(tmp_path / "events"), 6)
+
+
+@pytest.mark.parametrize("draw", [draw_impact, draw_texture])
+def test_what_cannot_be_drawn(tmp_path, draw):
+    with pytest.raises(InvalidInput, match="'x' is not a"):
+        draw("x", tmp_path / "x.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", [".", "no/such/x.png", "loop/x.png"])
+def test_a_place_for_no_picture_is_named_before_any_work(tmp_path, name, monkeypatch):
+    (tmp_path / "loop").symlink_to("loop")
+    monkeypatch.setattr(module, "run", None)
+    with pytest.raises(InvalidInput, match="picture: "):
+        draw_impact(Impact(speed=8.0), tmp_path / name)
+
+
+def test_a_full_disk_leaves_no_half_picture(tmp_path, largest_file, monkeypatch):
+    drawn = module._compose
+
+    def compose(*arguments):
+        with largest_file(1000):
+            drawn(*arguments)
+
+    monkeypatch.setattr(module, "_compose", compose)
+    with pytest.raises(MachineFault, match=r"carrier\.png: File too large"):
+        draw_impact(Impact(speed=8.0), tmp_path / "carrier.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("lost", ["events.dump", "carrier.png"])
+def test_what_lammps_could_not_write_is_the_machines_fault(tmp_path, monkeypatch, lost):
+    # LAMMPS itself does not always notice
+    made = {"events.dump": "make_texture", "carrier.png": "_compose"}[lost]
+    go_on = getattr(module, made)
+
+    def cut(*arguments):
+        for argument in arguments:
+            file = argument.with_name(lost) if isinstance(argument, Path) else None
+            if file is not None and file.is_file():
+                file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+        return go_on(*arguments)
+
+    monkeypatch.setattr(module, made, cut)
+    with pytest.raises(MachineFault) as fault:
+        draw_impact(Impact(speed=8.0), tmp_path / "x.png")
+    assert lost in str(fault.value)
+    assert "the disk may be full" in str(fault.value)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_command_draws(command, tmp_path):

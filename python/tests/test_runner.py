@@ -1,11 +1,12 @@
 """Impacts against an independent closed form, and what the record says about itself."""
 
+import math
 from dataclasses import replace
 
 import pytest
 from closed_form import collide, damping, hemispheres
 
-from dustdetach import Impact, InvalidInput, run
+from dustdetach import Impact, InvalidInput, MachineFault, run
 
 SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0)
 RESTITUTIONS = (0.5, 0.6, 0.7, 0.8, 0.9)
@@ -30,6 +31,66 @@ def test_straight_impacts_follow_the_closed_form(restitution, bare):
         assert result.restitution_realised == pytest.approx(restitution, rel=0.005), speed
         assert result.contact_time == pytest.approx(collision.time, rel=0.01), speed
         assert result.peak_acceleration == pytest.approx(collision.peak, rel=0.01), speed
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"speed": 0.1},
+        {"speed": 0.01},
+        {"speed": 0.1, "restitution": 0.1},
+        {"speed": 0.1, "restitution": 0.2},
+        {"speed": 0.1, "tangential": "integrate"},
+        {"speed": 0.5, "angle": 15.0},
+        {"speed": 8.0, "angle": 1.0},
+        {"speed": 1.0, "z0": 1e-10},
+        {"speed": 0.1, "rotation": False},
+    ],
+)
+def test_a_weak_or_grazing_impact_ends_by_rebound(changes):
+    impact = Impact(**changes)
+    collision = collide(impact.speed * math.sin(math.radians(impact.angle)), damping(impact.restitution))
+    result = run(impact)
+    assert result.end == "rebound"
+    assert result.restitution_realised == pytest.approx(impact.restitution, rel=0.005)
+    assert result.contact_time == pytest.approx(collision.time, rel=0.01)
+    assert result.peak_acceleration == pytest.approx(collision.peak, rel=0.01)
+    # no grain is near its pull-off force, and adhesion of so small a z0 is 16 times as strong
+    assert result.dispersion_ratio == 0
+
+
+def test_the_reference_case_at_a_tenth_of_a_metre_a_second():
+    result = run(Impact(speed=0.1))
+    assert result.restitution_realised == pytest.approx(0.70, rel=0.005)
+    assert result.contact_time == pytest.approx(7.55e-6, rel=0.01)
+
+
+def test_every_impact_of_the_figures_ends_by_rebound(figures_table):
+    for row in figures_table.values():
+        assert row.end == "rebound", row
+        assert row.restitution_realised == pytest.approx(row.restitution, rel=0.005), row
+
+
+@pytest.mark.parametrize("impact", ["x", None, {"speed": 2.0}, 4])
+def test_what_is_no_impact(impact):
+    with pytest.raises(InvalidInput, match=r"run: .* is not an Impact"):
+        run(impact)
+
+
+@pytest.mark.parametrize("name", [3, ".", "no/such/file", "a*b", "x.gz", "loop/x", "a\0b"])
+def test_files_that_lammps_cannot_write(tmp_path, name, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "loop").symlink_to("loop")
+    with pytest.raises(InvalidInput, match="events: "):
+        run(Impact(speed=8.0), events=name)
+    assert [path.name for path in tmp_path.iterdir()] == ["loop"]
+
+
+def test_a_full_disk_leaves_no_half_list_of_events(tmp_path, largest_file):
+    with largest_file(10_000), pytest.raises(MachineFault) as fault:
+        run(Impact(speed=8.0), events=tmp_path / "events")
+    assert str(fault.value).startswith(f"{tmp_path / 'events'}: ")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_shares_add_up():

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from texture_files import SMALL, disagreements
 
 from dustdetach import Impact, InvalidInput
-from dustdetach.texture import Distribution, check_texture, find_overlap, make_texture, read_texture
+from dustdetach.texture import Distribution, make_texture, read_texture
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +22,6 @@ def test_placed_textures_pass_every_check(tmp_path, changes):
     impact = Impact(speed=1.0, **changes)
     make_texture(impact, tmp_path / "t.txt")
     texture = read_texture(tmp_path / "t.txt")
-    check_texture(texture)
     assert len(texture.diameters) == impact.grains
     grain = (impact.grain_diameter / impact.carrier_diameter) ** 2 / 4
     assert texture.coverage == pytest.approx(impact.coverage, abs=grain)
@@ -52,25 +52,14 @@ def test_a_seed_makes_one_texture(tmp_path, reference):
     assert (tmp_path / "other.txt").read_bytes() != reference.read_bytes()
 
 
-SMALL = """# dust texture 1
-carrier_diameter 1.5e-3
-bare 0.33 0 0 -1
-# comment
-grains 3
-1 0 0 2e-5
-0 1 0 2e-5
-
-0 0 1 3e-5
-end
-"""
-
-
 def test_the_documented_format(tmp_path):
     path = tmp_path / "t.txt"
     path.write_text(SMALL)
     texture = read_texture(path)
-    check_texture(texture)
-    assert texture.lines.tolist() == [6, 7, 9]
+    assert texture.carrier_diameter == 1.5e-3
+    assert texture.bare == 0.33
+    assert texture.bare_axis.tolist() == [0, 0, -1]
+    assert texture.directions.tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
     assert texture.diameters.tolist() == [2e-5, 2e-5, 3e-5]
     assert texture.centres[2].tolist() == [0, 0, pytest.approx(0.765e-3)]
 
@@ -78,23 +67,23 @@ def test_the_documented_format(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("# dust texture 1", "# something", "line 1: not a texture file"),
-        ("carrier_diameter 1.5e-3", "carrier_diameter 0", "carrier_diameter: 0 is not above 0"),
-        ("carrier_diameter", "carrier", "line 2: 'carrier' where 'carrier_diameter' is expected"),
-        ("bare 0.33", "bare 4", "bare: 4 rad is out of range"),
-        ("0 0 -1", "0 0 0", "bare: its axis has no length"),
-        ("grains 3", "grains 4", "3 grains, but the line 'grains' says 4"),
-        ("grains 3", "grains 2.5", "grains: 2.5 is not a positive whole number"),
-        ("end\n", "", "the file is cut: no line 'end'"),
-        ("0 0 1 3e-5\nend\n", "0 0", "line 9: 2 numbers where 4 are expected"),
-        ("end\n", "end\n1 0 0 2e-5\n", "line 11: '1' after the end"),
-        ("0 1 0 2e-5", "0 nan 0 2e-5", "line 7: a number that is not finite"),
-        ("0 1 0 2e-5", "0 one 0 2e-5", "line 7: not a number: 'one'"),
-        ("0 1 0 2e-5", "0 1 0 -2e-5", "line 7: grain diameter -2e-05 is not above 0"),
-        ("0 1 0 2e-5", "0 1.01 0 2e-5", "line 7: direction of length 1.01, not a unit vector"),
-        ("0 1 0 2e-5", "0 1 0 2e-3", "line 7: grain of 0.002 m is larger than the carrier of 0.0015 m"),
-        ("0 1 0 2e-5", "0 0.1411200080598672 -0.9899924966004454 2e-5", "line 7: grain 0.1416 rad from the axis"),
-        ("0 1 0 2e-5", "0.9999 0.01414178206592083 0 2e-5", "lines 6 and 7: grains overlap by 9.25e-06 m"),
+        ("# dust texture 1", "# something", "line 1: "),
+        ("carrier_diameter 1.5e-3", "carrier_diameter 0", "line 2: "),
+        ("carrier_diameter", "carrier", "line 2: 'carrier_diameter' should be here"),
+        ("bare 0.33", "bare 4", "line 3: "),
+        ("0 0 -1", "0 0 -2", "line 3: the direction has length 2"),
+        ("grains 3", "grains 4", "line 10: "),
+        ("grains 3", "grains 2.5", "line 5: "),
+        ("end\n", "", "line 10: the file ends where 'end' should be"),
+        ("0 0 1 3e-5\nend\n", "0 0", "line 9: 4 numbers should be here, not 2"),
+        ("end\n", "end\n1 0 0 2e-5\n", "line 11: "),
+        ("0 1 0 2e-5", "0 nan 0 2e-5", "line 7: 'nan' is not a finite number"),
+        ("0 1 0 2e-5", "0 one 0 2e-5", "line 7: 'one' is not a finite number"),
+        ("0 1 0 2e-5", "0 1 0 -2e-5", "line 7: grain diameter -2e-05"),
+        ("0 1 0 2e-5", "0 1.01 0 2e-5", "line 7: the direction has length 1.01"),
+        ("0 1 0 2e-5", "0 1 0 1.5e-3", "line 7: grain diameter 0.0015"),
+        ("0 1 0 2e-5", "0 0.1411200080598672 -0.9899924966004454 2e-5", "line 7: "),
+        ("0 1 0 2e-5", "0.9999 0.01414178206592083 0 2e-5", "overlap"),
     ],
 )
 def test_mistakes_are_named_with_their_line(command, tmp_path, old, new, words):
@@ -103,8 +92,43 @@ def test_mistakes_are_named_with_their_line(command, tmp_path, old, new, words):
     process = command("texture", "check", "t.txt")
     assert process.returncode == 2
     assert process.stderr.count("\n") == 1
-    assert process.stderr.startswith("dustdetach texture check: t.txt: ")
+    assert process.stderr.startswith("dustdetach texture check: t.txt: line ")
     assert words in process.stderr
+
+
+def test_directions_come_back_as_unit_vectors(tmp_path):
+    (tmp_path / "t.txt").write_text(SMALL.replace("0 1 0 2e-5", "0 1.0005 0 2e-5"))
+    assert read_texture(tmp_path / "t.txt").directions[1].tolist() == [0, 1, 0]
+
+
+def test_python_and_the_fix_judge_odd_files_alike():
+    taken, differently = disagreements(1000)
+    assert differently == []
+    # neither nearly all nor nearly none, or it would show nothing
+    assert 100 < taken < 700
+
+
+def test_a_missing_core_is_said_with_what_to_do(command, tmp_path, monkeypatch):
+    (tmp_path / "t.txt").write_text(SMALL)
+    monkeypatch.setenv("DUSTDETACH_PLUGIN", str(tmp_path / "dustplugin.so"))
+    process = command("texture", "check", "t.txt")
+    assert process.returncode == 1
+    assert process.stderr.count("\n") == 1
+    assert "no library libdustcore.so" in process.stderr
+    assert "run ./bootstrap build" in process.stderr
+    (tmp_path / "libdustcore.so").write_text("no library")
+    assert "libdustcore.so does not load" in command("texture", "check", "t.txt").stderr
+
+
+@pytest.mark.parametrize("name", ["nowhere", "folder", "loop", "no text"])
+def test_files_that_are_none(tmp_path, name):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "no text").write_bytes(bytes(range(256)))
+    with pytest.raises(InvalidInput) as refusal:
+        read_texture(tmp_path / name)
+    assert str(refusal.value).startswith(f"{tmp_path / name}: ")
+    assert "\n" not in str(refusal.value)
 
 
 def test_a_file_cut_anywhere_is_noticed(tmp_path):
@@ -113,17 +137,6 @@ def test_a_file_cut_anywhere_is_noticed(tmp_path):
         path.write_text(SMALL[:length])
         with pytest.raises(InvalidInput):
             read_texture(path)
-
-
-def test_overlaps_are_found_wherever_they_are(reference):
-    texture = read_texture(reference)
-    assert find_overlap(texture) is None
-    for index in (0, 1234, 4499):
-        texture.directions[index] = texture.directions[(index + 2000) % 4500]
-        first, second, gap = find_overlap(texture)
-        assert {first, second} == {texture.lines[index], texture.lines[(index + 2000) % 4500]}
-        assert gap == pytest.approx(-20e-6)
-        texture.directions[index] = read_texture(reference).directions[index]
 
 
 def test_the_command_makes_and_checks(command, tmp_path):
@@ -139,7 +152,6 @@ def test_distributed_sizes(tmp_path):
     path = tmp_path / "texture.txt"
     make_texture(Impact(speed=1.0, coverage=0.05), path, Distribution("rrsb", 15e-6, 3.0))
     texture = read_texture(path)
-    check_texture(texture)
     assert 0.05 <= texture.coverage < 0.0502
     volumes = np.sort(texture.diameters) ** 3
     median = np.sort(texture.diameters)[np.searchsorted(np.cumsum(volumes), volumes.sum() / 2)]

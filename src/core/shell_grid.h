@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace Dust {
@@ -21,24 +22,33 @@ inline double chord2(const double *a, const double *b)
 }
 
 /*! Which of the points on a unit sphere put in so far are near another one: bands of polar angle, each cut into equal
- *  bins of azimuth */
+ *  bins of azimuth. Bins are as wide as the reach of the points, but no narrower than makes sense for their number: memory
+ *  goes with that, however small the reach. */
 class ShellGrid {
  public:
-  // reach = largest angle at which two points can be neighbours
-  explicit ShellGrid(double reach) :
-      angle(reach), nbands(std::clamp(static_cast<int>(PI / reach), 1, 4096)), first(nbands + 1, 0)
+  //! reach = largest angle (rad) at which two points are neighbours; number = of all points to come, roughly
+  ShellGrid(double reach, size_t number)
   {
+    constexpr double BINS_PER_POINT = 4.0;
+    const double width = std::max(reach, std::sqrt(4.0 * PI / (BINS_PER_POINT * (double(number) + 16.0))));
+    nbands = std::max(1, static_cast<int>(PI / width));
+    first.assign(nbands + 1, 0);
     for (int b = 0; b < nbands; b++) {
       const double widest = std::max(std::sin(PI * b / nbands), std::sin(PI * (b + 1) / nbands));
-      first[b + 1] = first[b] + std::clamp(static_cast<int>(2.0 * PI * widest / reach), 1, 8192);
+      first[b + 1] = first[b] + std::max(1, static_cast<int>(2.0 * PI * widest / width));
     }
-    bins.resize(first[nbands]);
+    latest.assign(first[nbands], NONE);
   }
 
-  void insert(int id, const double *n) { bins[bin(band(n[2]), azimuth(n))].push_back(id); }
+  void insert(int id, const double *n)
+  {
+    int &head = latest[bin(band(n[2]), azimuth(n))];
+    points.push_back({id, head});
+    head = static_cast<int>(points.size()) - 1;
+  }
 
-  // calls visit(id) for all points within reach, and some beyond, until it returns true; returns whether one did
-  template <typename Visit> bool any_near(const double *n, Visit visit) const
+  //! calls visit(id) for all points within an angle (rad), and some beyond, until it returns true; returns whether one did
+  template <typename Visit> bool any_near(const double *n, double angle, Visit visit) const
   {
     const double theta = std::acos(std::clamp(n[2], -1.0, 1.0));
     const double phi = azimuth(n);
@@ -53,18 +63,22 @@ class ShellGrid {
       from = ((from % nbins) + nbins) % nbins;
       for (int k = 0; k < count; k++) {
         const int i = from + k < nbins ? from + k : from + k - nbins;
-        for (int id : bins[first[b] + i])
-          if (visit(id)) return true;
+        for (int p = latest[first[b] + i]; p != NONE; p = points[p].earlier)
+          if (visit(points[p].id)) return true;
       }
     }
     return false;
   }
 
  private:
-  double angle;
+  static constexpr int NONE = -1;
+  struct Point {
+    int id, earlier;    // the one before it in its bin
+  };
   int nbands;
-  std::vector<int> first;    // first bin of each band
-  std::vector<std::vector<int>> bins;
+  std::vector<int> first;     // first bin of each band
+  std::vector<int> latest;    // point of each bin
+  std::vector<Point> points;
 
   static double azimuth(const double *n)
   {

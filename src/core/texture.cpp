@@ -39,8 +39,11 @@ void Dust::check_sizes(double carrier_radius, double grain_radius, const BareCap
 
 /* ---------------------------------------------------------------------- */
 
-void Dust::check_texture(const Texture &texture)
+void Dust::check_texture(const Texture &texture, const std::vector<int> &lines)
 {
+  const auto name = [&](size_t grain) {
+    return lines.empty() ? "grain " + std::to_string(grain + 1) : "line " + std::to_string(lines[grain]);
+  };
   double largest = 0.0;
   for (const Grain &grain : texture.grains) {
     check_sizes(texture.carrier_radius, grain.radius, texture.bare);
@@ -50,14 +53,17 @@ void Dust::check_texture(const Texture &texture)
 
   const double tolerance = 1.0e-9;    // round-off of the text, of the grain's size or of 1 rad
   const double cos_cap = std::cos(std::max(0.0, texture.bare.half_angle - tolerance));
-  ShellGrid grid(2.0 * std::asin(largest / (texture.carrier_radius + largest)));
+  const double reach = 2.0 * std::asin(largest / (texture.carrier_radius + largest));
+  ShellGrid grid(reach, texture.grains.size());
   for (size_t i = 0; i < texture.grains.size(); i++) {
     const Grain &a = texture.grains[i];
     if (texture.bare.half_angle > 0.0 && dot(a.n, texture.bare.axis) > cos_cap)
-      throw TextureError("grain " + std::to_string(i + 1) + " lies in the bare cap");
+      throw TextureError(name(i) + ": the grain lies in the bare cap, " +
+                         number_text(std::acos(std::min(1.0, dot(a.n, texture.bare.axis)))) +
+                         " rad from its axis: it must be " + number_text(texture.bare.half_angle) + " at least");
     size_t other = 0;
     const double ra = texture.carrier_radius + a.radius;
-    const bool overlap = grid.any_near(a.n, [&](int id) {
+    const bool overlap = grid.any_near(a.n, reach, [&](int id) {
       const Grain &b = texture.grains[id];
       const double rb = texture.carrier_radius + b.radius;
       other = id;
@@ -65,8 +71,7 @@ void Dust::check_texture(const Texture &texture)
       const double touch = (a.radius + b.radius) * (1.0 - tolerance);
       return distance2 < touch * touch;
     });
-    if (overlap)
-      throw TextureError("grains " + std::to_string(other + 1) + " and " + std::to_string(i + 1) + " overlap");
+    if (overlap) throw TextureError(name(i) + ": the grain overlaps that of " + name(other));
     grid.insert(static_cast<int>(i), a.n);
   }
 }

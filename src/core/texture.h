@@ -36,14 +36,19 @@ struct Texture {
   std::vector<Grain> grains;
 };
 
+/*! More grains than this are not handled: they would need gigabytes and minutes */
+constexpr double MOST_GRAINS = 5.0e7;
+
 /*! A number as messages print it */
 std::string number_text(double);
 
 /*! Throws TextureError if the radii (length) or the cap cannot be those of a texture */
 void check_sizes(double carrier_radius, double grain_radius, const BareCap &bare);
 
-/*! No grain inside the bare cap, wider than the carrier or overlapping another; throws TextureError naming the grains */
-void check_texture(const Texture &texture);
+/*! No grain inside the bare cap, wider than the carrier or overlapping another; throws TextureError naming the grains
+ *
+ * \param lines  of a file in which the grains stand, to be named in their place; or none */
+void check_texture(const Texture &texture, const std::vector<int> &lines = {});
 
 }    // namespace Dust
 

@@ -12,6 +12,8 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 using namespace Dust;
 
@@ -19,7 +21,7 @@ namespace {
 
 constexpr double MIN_GAP = 1.0e-3;    // between two grains, of the sum of their radii
 constexpr double CUT = 0.01;          // of a size distribution, at either end, by volume
-constexpr double MOST_GRAINS = 1.0e8;
+constexpr double JAMMED = 0.547;      // share of the shell of their centres that equal grains cover when no more fit
 
 // unit vector at height z and azimuth phi
 void point_at(double z, double phi, double *n)
@@ -36,16 +38,17 @@ void point_at(double z, double phi, double *n)
 
 class Placement {
  public:
-  Placement(double lowest_z, double carrier_radius, double largest, double smallest, std::mt19937_64 &numbers) :
-      zlo(lowest_z), carrier(carrier_radius), least(smallest), size(largest), cells_for(largest), tries(0),
-      grid(reach()), random(numbers)
+  // radii from large to small
+  Placement(double lowest_z, double carrier_radius, const std::vector<double> &radii, std::mt19937_64 &numbers) :
+      zlo(lowest_z), carrier(carrier_radius), least(radii.back()), size(0.0), number(radii.size()),
+      cells_for(radii.front()), tries(0), random(numbers)
   {
   }
 
   // places one grain, no larger than the last one; false if there is no room for it
   bool place(double radius)
   {
-    size = radius;
+    if (radius != size) resize(radius);
     if (radius < cells_for) cells.clear();    // smaller ones have room where larger ones have none
     const Cell everywhere = {zlo, 1.0, 0.0, 2.0 * PI};
     if (cells.empty()) {
@@ -62,7 +65,8 @@ class Placement {
           tries--;
           return true;
         }
-      if (cells_for < size && cells[0].phi1 - cells[0].phi0 < 0.05 * reach()) {    // room for smaller grains alone
+      if (cells_for < size &&
+          cells[0].phi1 - cells[0].phi0 < 0.05 * reach(size, size)) {    // room for smaller grains alone
         cells = {everywhere};
         cells_for = size;
       }
@@ -84,10 +88,15 @@ class Placement {
   };
 
   double zlo, carrier, least, size;
+  size_t number;              // of all grains
   std::vector<Cell> cells;    // where there may be room for a grain of a size; empty as long as nearly anywhere
   double cells_for;           // that size, at most the next grain's
   size_t tries;               // in these cells, until the next refinement
-  ShellGrid grid;
+  struct Level {              // grains between a size and half of it
+    double largest, angle;    // that size, and where its grains can be neighbours of the present one
+    ShellGrid grid;
+  };
+  std::vector<Level> levels;
   std::mt19937_64 &random;
 
   // squared chord that keeps a grain's direction off another's, from the triangle of both centres and the carrier's
@@ -96,7 +105,23 @@ class Placement {
     const double touch = (a + b) * (1.0 + MIN_GAP), step = a - b;
     return (touch * touch - step * step) / ((carrier + a) * (carrier + b));
   }
-  double reach() const { return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(least_chord2(size, size)))); }
+  double reach(double a, double b) const { return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(least_chord2(a, b)))); }
+
+  void resize(double radius)
+  {
+    constexpr double ROUND_OFF = 1.0e-9;
+    size = radius;
+    if (levels.empty() || size < 0.5 * levels.back().largest)
+      levels.push_back({size, 0.0, ShellGrid(reach(size, size), number - grains.size())});
+    for (Level &level : levels) level.angle = reach(size, level.largest) * (1.0 + ROUND_OFF);
+  }
+
+  // whether visit(id) is true for one of the grains that may be neighbours of one of this size, or a smaller one, at n
+  template <typename Visit> bool any_near(const double *n, Visit visit) const
+  {
+    return std::any_of(levels.begin(), levels.end(),
+                       [&](const Level &level) { return level.grid.any_near(n, level.angle, visit); });
+  }
 
   bool try_cell(const Cell &cell)
   {
@@ -104,10 +129,10 @@ class Placement {
     grain.radius = size;
     const double z = cell.z0 + uniform(random) * (cell.z1 - cell.z0);
     point_at(z, cell.phi0 + uniform(random) * (cell.phi1 - cell.phi0), grain.n);
-    if (grid.any_near(grain.n,
-                      [&](int id) { return chord2(grain.n, grains[id].n) < least_chord2(size, grains[id].radius); }))
+    if (any_near(grain.n,
+                 [&](int id) { return chord2(grain.n, grains[id].n) < least_chord2(size, grains[id].radius); }))
       return false;
-    grid.insert(static_cast<int>(grains.size()), grain.n);
+    levels.back().grid.insert(static_cast<int>(grains.size()), grain.n);
     grains.push_back(grain);
     return true;
   }
@@ -124,7 +149,7 @@ class Placement {
     point_at(cell.z1, cell.phi1, corner[3]);
     double radius = 0.0;
     for (auto &c : corner) radius = std::max(radius, std::sqrt(chord2(middle, c)));
-    return grid.any_near(middle, [&](int id) {
+    return any_near(middle, [&](int id) {
       const double limit =
           std::sqrt(least_chord2(cells_for, grains[id].radius)) - radius;    // chords obey the triangle inequality
       return limit > 0.0 && chord2(middle, grains[id].n) < limit * limit;
@@ -134,7 +159,7 @@ class Placement {
   // quarters the cells until most are smaller than a grain's surroundings, and drops those without room
   bool refine()
   {
-    const double wide = 0.5 * reach();
+    const double wide = 0.5 * reach(size, size);
     do {
       if ((cells.empty()) || (cells[0].z1 - cells[0].z0 < 1.0e-12)) return false;
       std::vector<Cell> finer;
@@ -171,6 +196,31 @@ void check_coverage(double coverage)
 {
   if (!(coverage > 0.0 && std::isfinite(coverage)))
     throw TextureError("coverage " + number_text(coverage) + " is not above 0");
+}
+
+// both kinds of impossible textures are refused before any time is spent on them
+void check_number(double coverage, double grains)
+{
+  if (!(grains <= MOST_GRAINS))
+    throw TextureError("coverage " + number_text(coverage) + " with these grains is " + number_text(grains) +
+                       " of them: it must be at most " + number_text(MOST_GRAINS));
+}
+
+// coverage of all the shell of the centres that is outside the bare cap
+double room(double carrier_radius, double grain_radius, const BareCap &bare)
+{
+  const double ratio = 1.0 + grain_radius / carrier_radius;
+  return ratio * ratio * 0.5 * (1.0 + std::cos(bare.half_angle));
+}
+
+// most = what can be placed on average. Chance and the rim of the cap add to the number of grains that find room, by twice
+// its root at most.
+void check_room(double coverage, double most, double grains)
+{
+  const double fit = grains * most / coverage;
+  if (grains > 1.01 * fit + 3.0 * std::sqrt(fit) + 1.0)
+    throw TextureError("coverage " + number_text(coverage) + " cannot be placed: it must be at most about " +
+                       number_text(most) + " with these grains and bare cap");
 }
 
 }    // namespace
@@ -218,10 +268,26 @@ static std::vector<double> draw_radii(const SizeDistribution &sizes, double sum_
     if (Placement::uniform(random) > std::pow(finest / x, 3)) continue;
     radii.push_back(0.5 * x);
     sum += 0.25 * x * x;
-    if (radii.size() > MOST_GRAINS) throw TextureError("coverage with these grain sizes is more than 1e8 grains");
   }
   std::sort(radii.begin(), radii.end(), std::greater<double>());
   return radii;
+}
+
+/* ----------------------------------------------------------------------
+   number of grains drawn so on average, until the sum of their radii squared is reached: by means over the volume
+------------------------------------------------------------------------- */
+
+static double expected_grains(const SizeDistribution &sizes, double sum_of_squares)
+{
+  constexpr int INTERVALS = 2000;    // of the logarithm of the fraction, as fine grains count most
+  double number = 0.0, squares = 0.0;
+  for (int k = 0; k < INTERVALS; k++) {
+    const double fraction = CUT * std::pow((1.0 - CUT) / CUT, (k + 0.5) / INTERVALS);
+    const double radius = 0.5 * sizes.quantile(fraction);
+    number += fraction / (radius * radius * radius);
+    squares += fraction / radius;
+  }
+  return sum_of_squares * number / squares;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -229,7 +295,7 @@ static std::vector<double> draw_radii(const SizeDistribution &sizes, double sum_
 static Texture place(double carrier_radius, const std::vector<double> &radii, double coverage, const BareCap &bare,
                      std::mt19937_64 &random)
 {
-  Placement placement(-std::cos(bare.half_angle), carrier_radius, radii.front(), radii.back(), random);
+  Placement placement(-std::cos(bare.half_angle), carrier_radius, radii, random);
   double sum = 0.0;
   for (const double radius : radii) {
     if (!placement.place(radius))
@@ -239,7 +305,7 @@ static Texture place(double carrier_radius, const std::vector<double> &radii, do
     sum += radius * radius;
   }
   for (Grain &grain : placement.grains) turn_from_south(bare.axis, grain.n);
-  return {carrier_radius, bare, placement.grains};
+  return {carrier_radius, bare, std::move(placement.grains)};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -251,8 +317,9 @@ Texture Dust::place_monolayer(double carrier_radius, double grain_radius, double
   check_coverage(coverage);
   const double wanted = grains_for_coverage(coverage, carrier_radius, grain_radius);
   if (wanted < 1.0) throw TextureError("coverage " + number_text(coverage) + " is less than one grain");
-  if (wanted > MOST_GRAINS)
-    throw TextureError("coverage " + number_text(coverage) + " with this grain diameter is more than 1e8 grains");
+  check_number(coverage, wanted);
+  const double share = JAMMED / ((1.0 + MIN_GAP) * (1.0 + MIN_GAP));
+  check_room(coverage, share * room(carrier_radius, grain_radius, bare), wanted);
   std::mt19937_64 random(seed);
   return place(carrier_radius, std::vector<double>(static_cast<size_t>(wanted), grain_radius), coverage, bare, random);
 }
@@ -268,8 +335,15 @@ Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &siz
   if (!(sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread)))
     throw TextureError(lognormal ? "geometric standard deviation " + number_text(sizes.spread) + " is not above 1"
                                  : "exponent " + number_text(sizes.spread) + " is not above 0");
-  check_sizes(carrier_radius, 0.5 * sizes.quantile(1.0 - CUT), bare);
+  const double largest = 0.5 * sizes.quantile(1.0 - CUT);
+  if (!(largest < carrier_radius))
+    throw TextureError("the coarsest grains of this distribution have diameter " + number_text(2.0 * largest) +
+                       ", not below the carrier's " + number_text(2.0 * carrier_radius));
+  check_sizes(carrier_radius, largest, bare);
   check_coverage(coverage);
+  const double wanted = expected_grains(sizes, 4.0 * coverage * carrier_radius * carrier_radius);
+  check_number(coverage, wanted);
+  check_room(coverage, room(carrier_radius, largest, bare), wanted);    // fine ones may fill what coarse ones leave
   std::mt19937_64 random(seed);
   return place(carrier_radius, draw_radii(sizes, 4.0 * coverage * carrier_radius * carrier_radius, random), coverage,
                bare, random);

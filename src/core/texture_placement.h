@@ -37,8 +37,8 @@ double grains_for_coverage(double coverage, double carrier_radius, double grain_
  *
  * \param coverage  X0, positive; the bare cap counts as surface
  * \param seed      the same seed gives the same texture, to the round-off of the C library's functions
- * \throw TextureError  wrong arguments, or coverage too high to be placed: near 0.547 of the shell of the centres
- *                      outside the cap the placement jams */
+ * \throw TextureError  wrong arguments, more than MOST_GRAINS, or coverage too high to be placed: near 0.547 of the shell of
+ *                      the centres outside the cap the placement jams; well above that it is not even tried */
 Texture place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare,
                         uint64_t seed);
 

@@ -13,17 +13,22 @@
 #include "dust_style_fix.h"
 #include "dust_style_pair.h"
 
+#include "comm.h"
 #include "error.h"
+#include "fix.h"
 #include "force.h"
 #include "input.h"
 #include "lammps.h"
 #include "modify.h"
+#include "pair.h"
 #include "plugin.h"
 #include "version.h"
 
+#include <dlfcn.h>
 #include <map>
 #include <set>
 #include <string>
+#include <typeinfo>
 
 using namespace LAMMPS_NS;
 
@@ -65,7 +70,41 @@ class Registry {
     publish(plugin, style, name, (Creator)create, map);
   }
 
+  // Styles of these names that a deck has made before: they are the host's and know no sub-model of ours. LAMMPS' own
+  // message would be that a model is illegal.
+  void warn_of_earlier_styles() const
+  {
+    std::string earlier;
+    const auto look = [&](const std::string &what, const std::type_info &type) {
+      if (module_of(&type) != module_of(&typeid(Registry))) earlier += (earlier.empty() ? "" : ", ") + what;
+    };
+    for (const std::string &style : registered) {
+      const std::string name = style.substr(style.find(' ') + 1);
+      if (style != "pair " + name) continue;
+      for (int k = 1; const Pair *pair = lmp->force->pair_match(name, 1, k); k++) {
+        look("pair_style " + name, typeid(*pair));
+        if (pair == lmp->force->pair || pair == lmp->force->pair_match(name, 1, k + 1)) break;
+      }
+    }
+    for (const Fix *fix : lmp->modify->get_fix_list())
+      if (registered.count(std::string("fix ") + fix->style))
+        look(std::string("fix ") + fix->id + " (" + fix->style + ")", typeid(*fix));
+    if (earlier.empty() || lmp->comm->me != 0) return;
+    Error *error = lmp->error;
+    error->warning(FLERR,
+                   "dustplugin.so was loaded after {}: what was there before knows none of its models, such as "
+                   "coeff_restitution/limited. Load it earlier, or now give pair_style none, then pair_style and "
+                   "pair_coeff again, and these fixes with the same IDs",
+                   earlier);
+  }
+
  private:
+  static const void *module_of(const void *address)
+  {
+    Dl_info info;
+    return dladdr(address, &info) ? info.dli_fbase : nullptr;
+  }
+
   // Two lists know a plugin's styles: one for the process (`plugin list`, restored by 4Jul2026 in every new instance
   // and after `clear`) and the map of each instance, which decides what a deck gets. LAMMPS ignores a
   // style that the process knows already, which on 4Feb2025 leaves a second instance without it; so the first is
@@ -87,11 +126,13 @@ class Registry {
       lmp->error->all(FLERR, "{} style {} is already loaded from another plugin: unload that first", style, name);
     }
     (*map)[name] = create;
+    registered.insert(std::string(style) + " " + name);
   }
 
   LAMMPS *lmp;
   void *handle;
   lammpsplugin_regfunc regfunc;
+  std::set<std::string> registered;    // "pair granular"
 };
 
 }    // namespace
@@ -122,4 +163,6 @@ extern "C" __attribute__((visibility("default"))) void dust_register_styles(void
 #define CommandStyle(key, Class) registry.add("command", #key, create<Class>, lmp->input->command_map)
 #include "dust_style_command.h"
 #undef COMMAND_CLASS
+
+  registry.warn_of_earlier_styles();
 }

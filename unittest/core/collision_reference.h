@@ -13,6 +13,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <utility>
 
 using namespace Dust;
 

@@ -114,23 +114,29 @@ def assert_same_motion(rows: list[list[float]], expected: list[list[float]]):
         assert row[7:] == pytest.approx(other[7:], abs=1e-2)
 
 
+# of grains: undamped, and near the critical damping, whose rate of the overlap is history too
+ETAS = ["0", "3e14"]
+
+
+@pytest.mark.parametrize("eta", ETAS)
 @pytest.mark.parametrize("models", ["plain", "gaps", "large"])
-def test_contacts_survive_a_swap_of_their_atoms(tmp_path, models):
-    """Necks, sliding and rolling displacements beside models with other histories, when atoms are sorted or change ranks."""
-    expected = swap(tmp_path, models=models)
+def test_contacts_survive_a_swap_of_their_atoms(tmp_path, models, eta):
+    """Necks, rates and displacements beside models with other histories, when atoms are sorted or change ranks."""
+    expected = swap(tmp_path, models=models, eta=eta)
     order = [line for line in (tmp_path / "swap.txt.order").read_text().splitlines() if line.isdigit()]
-    assert_same_motion(swap(tmp_path, models=models, sort="200"), expected)
+    assert_same_motion(swap(tmp_path, models=models, eta=eta, sort="200"), expected)
     swapped = [line for line in (tmp_path / "swap.txt.order").read_text().splitlines() if line.isdigit()]
     assert swapped != order
     for ranks, newton in (2, "on"), (4, "off"):
-        assert_same_motion(swap(tmp_path, ranks, models=models, newton=newton), expected)
+        assert_same_motion(swap(tmp_path, ranks, models=models, eta=eta, newton=newton), expected)
 
 
+@pytest.mark.parametrize("eta", ETAS)
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_restart_keeps_necks_and_displacements(tmp_path, ranks):
-    expected = swap(tmp_path)
-    swap(tmp_path, steps="300", save="yes")
-    assert_same_motion(swap(tmp_path, ranks, start="restart"), expected)
+def test_restart_keeps_necks_rates_and_displacements(tmp_path, ranks, eta):
+    expected = swap(tmp_path, eta=eta)
+    swap(tmp_path, eta=eta, steps="300", save="yes")
+    assert_same_motion(swap(tmp_path, ranks, eta=eta, start="restart"), expected)
 
 
 def emit(folder: Path, ranks: int, **variables: str) -> tuple[str, list[str]]:

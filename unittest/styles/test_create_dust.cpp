@@ -296,28 +296,48 @@ TEST(CreateDust, SortingAtomsChangesNothing)
   for (size_t k = 0; k < sorted.size(); k++) ASSERT_NEAR(sorted[k], unsorted[k], 1e-6 * largest);
 }
 
+// wrong words leave nothing behind: no grain and no file
 TEST(CreateDust, WrongInputIsNamed)
 {
-  const auto error = [](const std::string &words) {
+  const auto error = [](const std::string &words, const std::string &before = "") {
     Deck deck;
     deck.box();
     deck.carrier(0.0, 0.0, 0.001, 0.0, 0.0, 0.0);
-    deck("group none type 2\ngroup carriers type 1");
-    const std::string message = deck.attempt("create_dust " + words);
-    EXPECT_TRUE(message.empty() || lammps_get_natoms(deck.lmp) == 1.0 || words.find("bare") != std::string::npos);
-    return message;
+    deck("group none type 2\ngroup carriers type 1\n" + before);
+    std::string message = deck.attempt("create_dust " + words + " write dust_wrong.txt");
+    const bool written = std::ifstream("dust_wrong.txt").good();
+    std::remove("dust_wrong.txt");
+    EXPECT_EQ(lammps_get_natoms(deck.lmp), message.empty() ? 226.0 : 1.0) << words;
+    EXPECT_EQ(written, message.empty()) << words;
+    message.resize(message.find('\n') == std::string::npos ? message.size() : message.find('\n'));
+    return message;    // without LAMMPS' echo of the command
   };
-  const std::string ok = "texture monolayer 20e-6 coverage 0.01 seed 1";
-  EXPECT_EQ(error("carriers type 2 " + ok), "");
-  EXPECT_NE(error("all").find("create_dust"), std::string::npos);
-  EXPECT_NE(error("nobody type 2 " + ok).find("nobody"), std::string::npos);
-  EXPECT_NE(error("none type 2 " + ok).find("no carriers"), std::string::npos);
-  EXPECT_NE(error("carriers kind 2 " + ok).find("kind"), std::string::npos);
-  EXPECT_NE(error("carriers type 3 " + ok).find("type 3"), std::string::npos);
-  EXPECT_NE(error("carriers type 2 density 2700").find("texture"), std::string::npos);
-  EXPECT_NE(error("carriers type 2 " + ok + " friction 0.3").find("friction"), std::string::npos);
-  EXPECT_NE(error("carriers type 2 texture monolayer 20e-6 coverage 0.7 seed 1").find("coverage 0.7"),
-            std::string::npos);
+  const auto names = [&](const std::string &words, const std::string &what) {
+    const std::string message = error(words);
+    EXPECT_NE(message.find(what), std::string::npos) << words << " -> " << message;
+  };
+  const std::string texture = "texture monolayer 20e-6 coverage 0.01 seed 1", ok = "carriers type 2 " + texture;
+  EXPECT_EQ(error(ok), "");
+  names("all", "create_dust");
+  names("nobody type 2 " + texture, "nobody");
+  names("none type 2 " + texture, "no carriers");
+  names("carriers kind 2 " + texture, "kind");
+  names("carriers type 3 " + texture, "type 3");
+  names("carriers type 2 density 2700", "Create_dust needs keyword texture");
+  names("carriers type 2 texture monolayer 20e-6 coverage 0.7 seed 1", "coverage 0.7 cannot be placed");
+  names(ok + " density 2.7", "density value 2.7 must be from 10 to 30000 with units si");
+  names(ok + " density 2700 density 2700", "density is given twice");
+  names(ok + " " + texture, "texture is given twice");
+  names(ok + " elastic 75e9 0.3 210e9", "elastic nu_carrier value write must be");
+  names(ok + " write a.txt", "write is given twice");
+  for (const char *word : {"friction 0.3", "tangential off", "emit 2", "colour red"})
+    names(ok + " " + word, std::string("Create_dust has no keyword ") +
+                               std::string(word).substr(0, std::string(word).find(' ')) +
+                               ": use texture, coverage, seed, bare, distribution, density, hamaker, surface, elastic, "
+                               "orientation or write");
+  // the lowest grains would be below the box, which ends at -2 mm
+  const std::string message = error(ok, "set atom 1 z -0.0013");
+  EXPECT_NE(message.find("grains would lie outside the box"), std::string::npos) << message;
 }
 
 int main(int argc, char **argv)

@@ -101,6 +101,137 @@ TEST(FixDustDetachWords, UnknownKeywordsGetTheListOfAll)
     EXPECT_NE(message.find(" " + keyword), std::string::npos) << keyword << " -> " << message;
 }
 
+// in SI; other units have the same limits converted, units lj have none
+TEST(FixDustDetachWords, SlipsOfUnitsAreRefused)
+{
+  const auto names = [](const std::string &words, const std::string &range) {
+    const std::string message = error(REFERENCE_DUST + " " + words);
+    EXPECT_NE(message.find(range), std::string::npos) << words << " -> " << message;
+  };
+  const auto fits = [](const std::string &words) { EXPECT_EQ(error(REFERENCE_DUST + " " + words), "") << words; };
+  const std::string density = "density value ", densities = " must be from 10 to 30000 with units si";
+  names("density 2.7", density + "2.7" + densities);
+  names("density 9.99", density + "9.99" + densities);
+  names("density 30001", density + "30001" + densities);
+  fits("density 10");
+  fits("density 30000");
+  names("hamaker 0.9e-22 0.4e-9", "hamaker A value 0.9e-22 must be from 1e-22 to 1e-17 with units si");
+  names("hamaker 1.1e-17 0.4e-9", "hamaker A value 1.1e-17 must be from 1e-22 to 1e-17 with units si");
+  names("hamaker 1e-19 0.4", "hamaker z0 value 0.4 must be from 1e-11 to 1e-07 with units si");
+  names("hamaker 1e-19 0.9e-11", "hamaker z0 value 0.9e-11 must be from 1e-11 to 1e-07 with units si");
+  names("hamaker 1e-17 1e-10", "hamaker A and z0 give the surface energy 17.6839: it must be above 0 and at most 10");
+  names("surface 16", "surface value 16 must be above 0 and at most 10 with units si");
+  fits("surface 10");
+  for (const char *side : {"E", "E_carrier"}) {
+    const bool carrier = std::string(side) == "E_carrier";
+    for (const char *value : {"75", "0.99e6", "1.1e13"})
+      names(std::string("elastic ") + (carrier ? "75e9 0.3 " : "") + value + " 0.3" + (carrier ? "" : " 210e9 0.3"),
+            std::string("elastic ") + side + " value " + value + " must be from 1e+06 to 1e+13 with units si");
+  }
+  fits("elastic 1e6 0.3 1e13 0.3");
+  names("rolling 8.6", "rolling value 8.6 must be from 0 to 3.15");    // degrees
+  // F_c/m_d = 3 pi gamma R_12 / (4/3 pi R_d^3 rho_d) of 20 um grains falls with gamma: 9.81 m/s2 at 1.192896e-6 J/m2
+  const double gamma = 9.81 * 4.0 / 9.0 * 1e-15 * 2700.0 / (0.75e-3 * 10e-6 / 0.76e-3);
+  fits(line("surface %.17g", 1.0001 * gamma));
+  names(line("surface %.17g", 0.9999 * gamma), "it must be at least that of gravity, 9.81 with units si");
+  // with a distribution the coarsest grain decides
+  names(line("distribution lognormal 20e-6 1.5 surface %.17g", 1.0001 * gamma), "at least that of gravity");
+}
+
+TEST(FixDustDetachWords, SlipsOfUnitsInOtherUnits)
+{
+  struct Units {
+    const char *style;
+    double length, mass, time;
+  };
+  for (const Units &u :
+       {Units{"cgs", 1e2, 1e3, 1.0}, {"micro", 1e6, 1e15, 1e6}, {"nano", 1e9, 1e21, 1e9}, {"lj", 1, 1, 1}}) {
+    const bool lj = std::string(u.style) == "lj";
+    const double L = u.length, density = u.mass / (L * L * L), pressure = u.mass / (L * u.time * u.time),
+                 surface = u.mass / (u.time * u.time);
+    const auto message = [&](double rho, double E, double gamma, double A, double z0) {
+      Deck deck;
+      deck(std::string("units ") + u.style + "\natom_style sphere\natom_modify map array\n" +
+           line("region box block %.17g %.17g %.17g %.17g 0 1", -L, L, -L, L) + "\ncreate_box 1 box\n" +
+           line("create_atoms 1 single 0 0 0\nset atom 1 diameter %.17g density %.17g\n", 1.5e-3 * L, 7700 * density));
+      const std::string adhesion = A > 0.0 ? line("hamaker %.17g %.17g", A * pressure * L * L * L, z0 * L)
+                                           : line("surface %.17g", gamma * surface);
+      return deck.attempt(line("fix dust all dust/detach texture monolayer %.17g coverage 0.2 seed 1 density %.17g "
+                               "friction 0.3 elastic %.17g 0.3 %.17g 0.3 ",
+                               20e-6 * L, rho * density, E * pressure, 210e9 * pressure) +
+                          adhesion);
+    };
+    EXPECT_EQ(message(2700, 75e9, 0.016, 0, 0), "") << u.style;
+    EXPECT_EQ(message(10.001, 1.001e6, 9.99, 0, 0), "") << u.style;
+    EXPECT_EQ(message(29999, 0.999e13, 0, 1.001e-22, 1.001e-11), "") << u.style;
+    EXPECT_EQ(message(2700, 75e9, 0, 0.999e-17, 0.999e-7), "") << u.style;
+    const auto refused = [&](const std::string &text, const char *word) {
+      if (lj)
+        EXPECT_EQ(text, "") << word;
+      else
+        EXPECT_NE(text.find(word), std::string::npos) << u.style << ": " << text;
+      EXPECT_EQ(text.find(std::string("with units ") + u.style) == std::string::npos, lj) << text;
+    };
+    refused(message(9.99, 75e9, 0.016, 0, 0), "density value");
+    refused(message(30001, 75e9, 0.016, 0, 0), "density value");
+    refused(message(2700, 0.999e6, 0.016, 0, 0), "elastic E value");
+    refused(message(2700, 1.001e13, 0.016, 0, 0), "elastic E value");
+    refused(message(2700, 75e9, 10.01, 0, 0), "surface value");
+    refused(message(2700, 75e9, 0, 0.999e-22, 0.4e-9), "hamaker A value");
+    refused(message(2700, 75e9, 0, 1.001e-17, 0.4e-9), "hamaker A value");
+    refused(message(2700, 75e9, 0, 1e-20, 0.999e-11), "hamaker z0 value");
+    refused(message(2700, 75e9, 0, 1e-19, 1.001e-7), "hamaker z0 value");
+    refused(message(2700, 75e9, 1e-6, 0, 0), "gravity");
+  }
+}
+
+TEST(FixDustDetachWords, GrainsAreFinerThanTheirCarrier)
+{
+  EXPECT_EQ(error("texture monolayer 0.749e-3 coverage 0.2 seed 1"), "");
+  const std::string message = error("texture monolayer 0.751e-3 coverage 0.2 seed 1");
+  EXPECT_NE(message.find("grains of diameter 0.000751: it must be below the carriers' radius, 0.00075"),
+            std::string::npos)
+      << message;
+}
+
+TEST(FixDustDetachWords, WhatIsNotThereIsRefused)
+{
+  for (const std::string words : {"spread 1.5", "sizes 0.05", "meet yes", "inertia motion"}) {
+    const std::string message = error(REFERENCE_DUST + " " + words);
+    EXPECT_NE(message.find("has no keyword " + words.substr(0, words.find(' '))), std::string::npos) << message;
+  }
+  const std::string impulse = error(REFERENCE_DUST + " tangential impulse");
+  EXPECT_NE(impulse.find("tangential value impulse must be estimate, integrate"), std::string::npos) << impulse;
+  for (const char *law : {"", "tangential estimate", "tangential frictionless", "tangential off"}) {
+    const std::string message = error(REFERENCE_DUST + " damping 0.5 " + law);
+    EXPECT_NE(message.find("damping needs tangential integrate"), std::string::npos) << law << " -> " << message;
+  }
+}
+
+TEST(FixDustDetachWords, TexturesFromAFileBringTheirOwnGrains)
+{
+  EXPECT_EQ(error("texture monolayer 20e-6 coverage 0.01 seed 1 write dust_words.txt"), "");
+  EXPECT_EQ(error("texture file dust_words.txt"), "");
+  for (const std::string words : {"coverage 0.2", "seed 3", "bare 0.3", "distribution rrsb 20e-6 3"}) {
+    const std::string message = error("texture file dust_words.txt " + words);
+    EXPECT_NE(message.find(words.substr(0, words.find(' ')) + " goes with texture monolayer"), std::string::npos)
+        << message;
+  }
+  std::remove("dust_words.txt");
+}
+
+TEST(FixDustDetachWords, ATextureThatCannotBeWrittenStopsTheRun)
+{
+  const auto one_line = [](const std::string &path, const std::string &cause) {
+    const std::string message = error(REFERENCE_DUST + " write " + path);
+    EXPECT_NE(message.find("Fix dust/detach write " + path + ": it cannot be written: " + cause), std::string::npos)
+        << message;
+  };
+  one_line("/dev/full", "No space left on device");
+  one_line("/no/such/folder/texture", "No such file or directory");
+  one_line("/tmp", "Is a directory");
+}
+
 TEST(FixDustDetachWords, WrongInputIsNamed)
 {
   const auto names = [&](const std::string &words, const std::string &word) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <utility>
 
 namespace {
 
@@ -175,6 +176,81 @@ TEST(JkrVdw, DampingRatioAtTheEquilibrium)
   grain_on_wall(deck, g, -g.delta_0, plane_wall(model(g, "", 2.0 * zeta * omega / g.a0)), dt, speed);
   deck("fix move all nve/sphere\nrun 1000 post no");
   EXPECT_NEAR(deck.atom("v", 1)[2], speed * std::exp(-2.0 * M_PI * zeta / std::sqrt(1.0 - zeta * zeta)), 0.01 * speed);
+}
+
+TEST(JkrVdw, LeavesACurvedWallWhereThePullOffForceHoldsItNoLonger)
+{
+  // glides round a sphere that is a wall: m w^2/(R + r) > F_c, whatever the time step
+  const double radius = 10e-6, carrier = 0.75e-3;
+  Grain g(radius * carrier / (radius + carrier), 0.4e-9);    // the contact's effective radius
+  g.mass = 4.0 / 3.0 * M_PI * radius * radius * radius * 2700.0;
+  const double held = std::sqrt(g.fc * (carrier + radius) / g.mass), k0 = 1.2 * g.modulus * g.a0;
+  for (double dt : {2e-9, 1e-9})
+    for (double factor : {0.9995, 1.0005}) {
+      Deck deck;
+      deck("units si\natom_style sphere\nboundary f f f\nnewton off\ncomm_modify vel yes\n"
+           "region box block -2e-3 2e-3 -2e-3 2e-3 -2e-3 2e-3\ncreate_box 1 box\nneighbor 1e-4 bin\npair_style "
+           "granular");
+      const std::string words = line("jkr/vdw 1.1053e11 %.17g 0.3 %.17g 4e-10 damping viscoelastic "
+                                     "tangential mindlin NULL 0.0 0.0",
+                                     2.0 * std::sqrt(k0 / g.mass) / g.a0, HAMAKER);
+      deck("pair_coeff * * " + words);
+      deck(line("create_atoms 1 single 0 0 %.17g\nset atom 1 diameter %.17g density 2700\nvelocity all set %.17g 0 0\n"
+                "timestep %g\nregion carrier sphere 0 0 0 %.17g side out",
+                carrier + radius - g.delta_0, 2.0 * radius, factor * held, dt, carrier));
+      deck("fix wall all wall/gran/region granular " + words + " region carrier\nfix move all nve/sphere\n" +
+           line("run %g post no", std::round(40e-6 / dt)));
+      const double *x = deck.atom("x", 1);
+      const double gap = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) - carrier - radius;
+      EXPECT_EQ(gap > g.delta_c, factor > 1.0) << dt << " " << factor;
+    }
+}
+
+TEST(JkrVdw, SetupAndRestartRepeatTheDampingOfTheLastStep)
+{
+  const Grain g(10e-6, 0.4e-9);
+  const double omega = std::sqrt(1.2 * g.modulus * g.a0 / g.mass);
+  const std::string wall = plane_wall(model(g, "", 2.0 * omega / g.a0));
+  const auto force = [&](Deck &deck) { return deck.atom("f", 1)[2]; };
+  Deck whole, split, restarted;
+  for (Deck *deck : {&whole, &split}) {
+    grain_on_wall(*deck, g, -g.delta_0, wall, 1e-9, 5e-3);
+    (*deck)("fix move all nve/sphere\nrun 37 post no");
+  }
+  const double last = force(whole), gap = whole.atom("x", 1)[2] - g.radius;
+  EXPECT_GT(std::fabs(last - g.branch(-gap)), 0.05 * g.fc);
+  split("run 0 post no");
+  EXPECT_NEAR(force(split), last, 1e-6 * g.fc);    // round-off of the position
+  split("write_restart rate.restart");
+  restarted("read_restart rate.restart\nneighbor 1e-5 bin\ncomm_modify vel yes\npair_style granular\npair_coeff * * " +
+            model(g) + "\ntimestep 1e-9\n" + wall + "\nfix move all nve/sphere\nrun 0 post no");
+  EXPECT_NEAR(force(restarted), last, 1e-6 * g.fc);
+  for (Deck *deck : {&whole, &split, &restarted}) {
+    (*deck)("run 20 post no");
+    EXPECT_NEAR(deck->atom("x", 1)[2], whole.atom("x", 1)[2], 1e-6 * g.delta_0);
+  }
+  std::remove("rate.restart");
+}
+
+TEST(JkrVdw, MovedWithoutVelocityItIsDampedByItsOverlap)
+{
+  // held against a wall that swings: the overlap's rate is known, the damping force eta m a times it
+  const Grain g(10e-6, 0.4e-9);
+  const double amplitude = 0.02e-9, period = 0.5e-6, eta = 1e14;
+  Deck deck;
+  grain_on_wall(deck, g, -g.delta_0, "", 1e-9, 0.0);
+  deck(plane_wall(model(g, "", eta)) + line(" wiggle z %.17g %.17g", amplitude, period) + "\nrun 0 post no");
+  for (int k = 1; k <= 700; k++) {
+    deck("run 1 pre no post no");
+    const double phase = 2.0 * M_PI / period * 1e-9 * k;
+    const double overlap = g.delta_0 + amplitude * (1.0 - std::cos(phase)),
+                 rate = 2.0 * M_PI / period * amplitude * std::sin(phase);
+    const double a = g.a0 * Dust::jkr_contact_radius(overlap / g.delta_c),
+                 scale = eta * g.mass * g.a0 * amplitude / period;
+    if (k > 3) {
+      ASSERT_NEAR(deck.atom("f", 1)[2], g.branch(overlap) + eta * g.mass * a * rate, 1e-2 * scale) << k;
+    }
+  }
 }
 
 TEST(JkrVdw, RollingResistance)

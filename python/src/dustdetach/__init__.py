@@ -6,7 +6,7 @@
 """
 
 from .cases import figure4, figure5, read_cases
-from .errors import InvalidInput, LammpsMissing
+from .errors import DustError, InvalidInput, LammpsBusy, LammpsMissing, MachineFault
 from .impact import Impact
 from .result import Result, read_csv
 from .runner import run
@@ -16,9 +16,12 @@ from .version import __version__
 
 __all__ = [
     "CasesFailed",
+    "DustError",
     "Impact",
     "InvalidInput",
+    "LammpsBusy",
     "LammpsMissing",
+    "MachineFault",
     "Result",
     "Texture",
     "__version__",

@@ -47,7 +47,7 @@ def named_or_file(name: str) -> list[Impact]:
     """
     if name in NAMED:
         return NAMED[name]()
-    return read_cases(Path(name))
+    return read_cases(name)
 
 
 def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
@@ -82,16 +82,18 @@ def read_cases(path: str | Path) -> list[Impact]:
         InvalidInput: no such file, not TOML, an unknown key, a value out of range; the message names file and key.
     """
     path = as_path(path, "read_cases")
-    if not os.path.exists(path):
+    if not os.path.lexists(path):
         raise InvalidInput(f"{path}: no such file; allowed: {', '.join(NAMED)} or the name of a TOML file")
     text = read_text(path)
     try:
         content = tomllib.loads(text)
     except RecursionError:
         raise InvalidInput(f"{path}: not TOML that can be read: nested too deeply") from None
-    except ValueError as error:
-        # tomllib's own error, or Python's about a whole number of more than 4300 digits
+    except tomllib.TOMLDecodeError as error:
         raise InvalidInput(f"{path}: not TOML: {str(error).splitlines()[0]}") from None
+    except ValueError:
+        # Python takes no whole number of more than 4300 digits
+        raise InvalidInput(f"{path}: a number of too many digits") from None
 
     tables = content.pop("case", [{}])
     if not (isinstance(tables, list) and tables and all(isinstance(table, dict) for table in tables)):

@@ -9,7 +9,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from .errors import LammpsBusy, LammpsMissing
+from .errors import DustError, LammpsMissing
 from .files import read_text, scratch_folder
 from .places import find_deck, find_plugin, lammps_library
 from .runner import DECKS
@@ -45,7 +45,7 @@ def examine() -> list[Finding]:
         findings.append(Finding("LAMMPS library", str(lammps_library())))
         with open_lammps() as lmp:
             findings += _lammps(lmp)
-    except (LammpsMissing, LammpsBusy) as error:
+    except DustError as error:
         findings.append(Finding("LAMMPS", f"{error}", ok=False))
     try:
         folders = {find_deck(deck).parent for deck in DECKS.values()}
@@ -83,7 +83,7 @@ def _lammps(lmp: Any) -> list[Finding]:
 
 
 def _info(lmp: Any) -> list[str]:
-    with scratch_folder() as folder:
+    with scratch_folder(1000) as folder:
         path = folder / "info"
         lmp.command(f"info communication fft out overwrite {lammps_file(path, 'TMPDIR')}")
         return read_text(path).splitlines()

@@ -19,6 +19,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .errors import InvalidInput
 from .files import as_path, replace_file
+from .impact import FASTEST
 from .result import Result, read_csv
 from .sweeping import TABLE
 
@@ -82,6 +83,8 @@ def plot(folder: str | Path) -> list[Path]:
     """
     folder = as_path(folder, "plot")
     results = read_csv(folder / TABLE)
+    for row in results:
+        _check(row, folder / TABLE)
     straight = [result for result in results if result.angle == 90]
     oblique = _at_most_angles(results)
     figures = {}
@@ -92,6 +95,15 @@ def plot(folder: str | Path) -> list[Path]:
     if not any(len({result.speed for result in rows}) > 1 for rows in figures.values()):
         raise InvalidInput(f"{folder / TABLE}: no curve to draw: at least two speeds are needed")
     return [path for name in sorted(figures) for path in draw(figures[name], folder / name)]
+
+
+def _check(row: Result, table: Path) -> None:
+    """Numbers that no impact has would have no place in a figure, either."""
+    if not 0 < row.speed <= FASTEST:
+        raise InvalidInput(f"{table}: speed: {row.speed:g} is out of range; allowed: above 0 and at most {FASTEST:g}")
+    for name in ("dispersion_ratio", "north", "south"):
+        if not 0 <= getattr(row, name) <= 1:
+            raise InvalidInput(f"{table}: {name}: {getattr(row, name):g} is out of range; allowed: 0 to 1")
 
 
 def draw(results: list[Result], stem: Path) -> list[Path]:

@@ -83,8 +83,8 @@ def replace_file(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def scratch_folder() -> Iterator[Path]:
-    """A temporary folder that is removed with all that is in it.
+def scratch_folder(room: int) -> Iterator[Path]:
+    """A temporary folder with room for so many bytes, removed with all that is in it.
 
     Raises:
         MachineFault: there is no place for one.
@@ -94,7 +94,25 @@ def scratch_folder() -> Iterator[Path]:
     except OSError as error:
         raise MachineFault(f"no temporary folder: {error.strerror or error}; TMPDIR may name another place") from None
     with folder as name:
+        check_room(Path(name), room)
         yield Path(name)
+
+
+def check_room(folder: Path, room: int) -> None:
+    """Whether so many bytes of temporary files fit into a folder, asked before LAMMPS or MPI find out on their own.
+
+    Raises:
+        MachineFault: they do not.
+    """
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            os.posix_fallocate(file.fileno(), 0, room)
+    except OSError as error:
+        if error.errno in MACHINE_FAULTS:
+            raise MachineFault(
+                f"{folder}: {error.strerror}: {room / 1e6:.3g} MB of temporary files are needed there; TMPDIR may name "
+                "another folder"
+            ) from None
 
 
 def make_folder(path: Path) -> None:

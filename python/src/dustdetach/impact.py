@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -18,6 +19,9 @@ JAMMING = 0.547
 
 #: the most grains a texture may have; beyond it a case would not fit in memory
 MOST_GRAINS = 10_000_000
+
+#: m/s
+FASTEST = 100.0
 
 LARGEST_SEED = 900_000_000
 
@@ -117,7 +121,7 @@ class Impact:
         _one_of("method", self.method, METHODS)
         _one_of("tangential", self.tangential, TANGENTIAL)
 
-        _above("speed", self.speed, 0.0, 100.0, "m/s")
+        _above("speed", self.speed, 0.0, FASTEST, "m/s")
         _above("angle", self.angle, 0.0, 90.0, "degrees")
         _from("restitution", self.restitution, 0.01, 1.0)
         _above("carrier_diameter", self.carrier_diameter, 0.0, 1.0, "m")
@@ -220,12 +224,14 @@ class Impact:
         return float(round(JAMMING * shell * (1 + math.cos(self.bare)) / 2, 4))
 
     @classmethod
-    def from_mapping(cls, values: dict[str, Any]) -> Impact:
+    def from_mapping(cls, values: Mapping[str, Any]) -> Impact:
         """An impact from names and values.
 
         Raises:
             InvalidInput: an unknown name, a missing speed, or a value out of its range.
         """
+        if not isinstance(values, Mapping):
+            raise InvalidInput(f"{shown(values)} is not a mapping of names and values")
         known = [field.name for field in fields(cls)]
         for name in values:
             if name not in known:
@@ -233,6 +239,21 @@ class Impact:
         if "speed" not in values:
             raise InvalidInput("speed: missing; allowed: above 0 and at most 100 m/s")
         return cls(**values)
+
+
+def as_impact(value: object, name: str) -> Impact:
+    """An impact that a caller has passed.
+
+    Args:
+        value: what was passed.
+        name: what the message calls it.
+
+    Raises:
+        InvalidInput: it is another thing.
+    """
+    if not isinstance(value, Impact):
+        raise InvalidInput(f"{name}: {shown(value)} is not an Impact")
+    return value
 
 
 PARAMETERS = tuple(field.name for field in fields(Impact))

@@ -30,15 +30,22 @@ from .columns import DetachRow, Mode
 from .errors import InvalidInput, MachineFault, shown
 from .files import as_path, read_text, replace_file, scratch_folder, writable_file
 from .frames import Frame, frame_sizes, read_frames
-from .impact import Impact
+from .impact import Impact, as_impact
 from .result import Result
 from .runner import Watch, run
-from .session import lammps_file, lammps_session
+from .session import MPI_ROOM, lammps_file, lammps_session
 from .texture import Texture, make_texture, read_texture
 
 #: width and height of the drawing of a carrier, and of each moment of an impact, pixels
 SIZE = 900
 MOMENT_SIZE = 600
+
+
+#: bytes of the images that LAMMPS draws, and of a grain in a frame, a list of events or a texture file
+IMAGE_ROOM, ROW_ROOM = 4_000_000, 160
+
+#: how long a resolved run takes at most, s, and the steps from frame to frame, both of the deck
+RESOLVED_LIMIT, FRAME_STEPS = 50e-6, 500
 
 
 @dataclass(frozen=True)
@@ -91,9 +98,11 @@ class _Scene:
 
 def draw_texture(texture: Texture, path: str | Path) -> None:
     """Draw a carrier with its grains as PNG, seen from the side of the impact and below so that the bare cap shows."""
+    if not isinstance(texture, Texture):
+        raise InvalidInput(f"draw_texture: {shown(texture)} is not a Texture")
     path = writable_file(as_path(path, "picture"), "picture")
     kinds = np.zeros(len(texture.diameters), dtype=int)
-    with scratch_folder() as folder:
+    with scratch_folder(IMAGE_ROOM) as folder:
         image = folder / "carrier.png"
         _render(_carrier_scene(texture, kinds, [GRAIN]), image)
         _compose(image, [], path)
@@ -116,9 +125,12 @@ def draw_impact(impact: Impact, path: str | Path, watch: Watch | None = None) ->
         InvalidInput: there can be no file of this name.
         MachineFault: the disk is full, that of temporary files included.
     """
+    impact = as_impact(impact, "draw_impact")
     path = writable_file(as_path(path, "picture"), "picture")
-    draw = _draw_moments if impact.method == "resolved" else _draw_fates
-    with scratch_folder() as folder:
+    resolved = impact.method == "resolved"
+    draw = _draw_moments if resolved else _draw_fates
+    frames = RESOLVED_LIMIT / (FRAME_STEPS * impact.timestep) + 2 if resolved else 2
+    with scratch_folder(MPI_ROOM + IMAGE_ROOM + round(frames * ROW_ROOM * (impact.grains + 10))) as folder:
         return draw(impact, path, folder, watch)
 
 
@@ -171,7 +183,7 @@ def _read_moments(frames: str | Path, result: Result) -> list[Frame]:
 
 
 def _draw_frames(chosen: list[Frame], result: Result, path: Path) -> None:
-    with scratch_folder() as folder:
+    with scratch_folder(IMAGE_ROOM) as folder:
         images = [folder / f"{frame.step}.png" for frame in chosen]
         for frame, image in zip(chosen, images, strict=True):
             _render(_side_scene(frame), image)

@@ -1,4 +1,4 @@
-"""Where the LAMMPS module, the plugin and the decks are: from the environment, the checkout, or an installation."""
+"""Where LAMMPS' module, the plugin, the core and the decks are: by the environment, the checkout or an installation."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from types import ModuleType
 from .errors import LammpsMissing
 
 PLUGIN = "dustplugin.so"
+CORE = "libdustcore.so"
 
 
 def _checkout() -> Path | None:
@@ -63,6 +64,21 @@ def find_plugin() -> Path:
             return place.resolve()
     tried = ", ".join(map(str, places))
     raise LammpsMissing(f"no plugin {PLUGIN} (tried {tried}); run ./bootstrap build or set DUSTDETACH_PLUGIN")
+
+
+@cache
+def find_core() -> Path:
+    """The library with the core's own judge of texture files, beside the plugin.
+
+    Raises:
+        LammpsMissing: it is beside none of `plugin_places`.
+    """
+    places = [place.resolve().with_name(CORE) for place in plugin_places()]
+    for place in places:
+        if place.is_file():
+            return place
+    tried = ", ".join(map(str, places))
+    raise LammpsMissing(f"no library {CORE} (tried {tried}); run ./bootstrap build: it belongs beside {PLUGIN}")
 
 
 def plugin_if_any() -> Path | None:

@@ -138,7 +138,7 @@ def read_csv(path: str | Path) -> list[Result]:
         InvalidInput: no such file, a missing column, or a field that is not of its column's type.
     """
     path = as_path(path, "read_csv")
-    if not os.path.exists(path):
+    if not os.path.lexists(path):
         raise InvalidInput(f"{path}: no such file; run 'dustdetach sweep' into this folder first")
     reader = csv.DictReader(StringIO(read_text(path), newline=""))
     try:

@@ -6,15 +6,15 @@ import math
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from .columns import DetachAtom, DetachVector
-from .errors import InvalidInput, shown
-from .files import as_path
-from .impact import Impact
+from .errors import InvalidInput, MachineFault
+from .files import as_path, replace_file, writable_file
+from .impact import Impact, as_impact
 from .places import find_deck, lammps_module
 from .result import Result
 from .session import lammps_file, lammps_session
@@ -64,13 +64,13 @@ def run(
         Dispersion ratio with its shares, and the collision's time, peak acceleration and restitution.
 
     Raises:
-        InvalidInput: ``events`` or ``frames`` that the method does not write, or what only LAMMPS can judge, for
-            instance a coverage that cannot be placed.
+        InvalidInput: ``events`` or ``frames`` that the method does not write or that can be no file, or what only
+            LAMMPS can judge, for instance a coverage that cannot be placed.
+        MachineFault: the disk is full, or fails.
         LammpsMissing: LAMMPS, the plugin or the deck is not there.
         LammpsBusy: another thread of this process is at it: LAMMPS runs one at a time in a process.
     """
-    if not isinstance(impact, Impact):
-        raise InvalidInput(f"run: {shown(impact)} is not an Impact")
+    impact = as_impact(impact, "run")
     if events is not None and impact.method != "functions":
         raise InvalidInput("events: a resolved run has none; allowed: with method functions")
     if frames is not None and impact.method != "resolved":
@@ -82,12 +82,12 @@ def run(
         variables["rotation"] = "yes" if impact.rotation else "no"
         if impact.tangential == "integrate":
             variables["grain_damping"] = impact.grain_damping
-    if events is not None:
-        variables["events"] = _dump_file(events, "events")
-    if frames is not None:
-        variables["dump"] = _dump_file(frames, "frames")
     deck = find_deck(DECKS[impact.method])
-    with lammps_session(variables, comm) as lmp:
+    with ExitStack() as stack:
+        for name, variable, file in (("events", "events", events), ("frames", "dump", frames)):
+            if file is not None:
+                variables[variable] = stack.enter_context(_dump(file, name))
+        lmp = stack.enter_context(lammps_session(variables, comm))
         with _watched(lmp, watch):
             lmp.file(str(deck))
         read = _read_resolved if impact.method == "resolved" else _read_functions
@@ -100,15 +100,21 @@ def run(
         )
 
 
-def _dump_file(file: str | Path, name: str) -> str:
-    """A file of text for LAMMPS' command dump, quoted for it; * and some endings would make it another kind of file."""
-    path = as_path(file, name)
+@contextmanager
+def _dump(file: str | Path, name: str) -> Iterator[str]:
+    """A file of text that LAMMPS' command dump writes, complete or not at all, as a word of that command."""
+    path = writable_file(as_path(file, name), name)
     if "*" in str(path) or "%" in str(path) or path.suffix in (".bin", ".gz", ".zst"):
         raise InvalidInput(
-            f"{name}: {path}: LAMMPS writes no single file of text by this name; allowed: without * and %, "
-            "and not ending in .bin, .gz or .zst"
+            f"{name}: {path}: LAMMPS writes no single file of text by this name; allowed: without * and %, and not "
+            "ending in .bin, .gz or .zst"
         )
-    return lammps_file(path, name)
+    with replace_file(path) as part:
+        try:
+            yield lammps_file(part, name)
+        except MachineFault as error:
+            # LAMMPS says what it was writing, but not where
+            raise MachineFault(f"{path}: {error}" if "dump" in str(error) else str(error)) from None
 
 
 @contextmanager

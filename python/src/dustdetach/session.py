@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import threading
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,10 +12,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .errors import InvalidInput, LammpsBusy, LammpsMissing
+from .errors import InvalidInput, LammpsBusy, LammpsMissing, MachineFault
+from .files import MACHINE_FAULTS, check_room
 from .places import find_plugin, lammps_module
 
 FIX_STYLE = "dust/detach"
+
+#: temporary files of Open MPI, which it makes when the first LAMMPS of a process starts: 8.2 MB, bytes
+MPI_ROOM = 10 << 20
 
 #: options that keep LAMMPS from writing to the screen or a log file
 QUIET = ("-log", "none", "-screen", "none", "-nocite", "-echo", "none")
@@ -36,6 +41,7 @@ def lammps_session(variables: Mapping[str, Any] | None = None, comm: Any = None)
         LammpsMissing: LAMMPS or the plugin cannot be found or loaded.
         LammpsBusy: another thread of this process has it open.
         InvalidInput: LAMMPS refuses a command of the block; its message without the place in LAMMPS' source.
+        MachineFault: it cannot write a file of the block.
     """
     arguments = list(QUIET)
     for name, value in (variables or {}).items():
@@ -45,7 +51,9 @@ def lammps_session(variables: Mapping[str, Any] | None = None, comm: Any = None)
             load_plugin(lmp)
             yield lmp
         except LammpsRefusal as error:
-            raise InvalidInput(str(error)) from None
+            text = str(error)
+            fault = any(os.strerror(number) in text for number in MACHINE_FAULTS)
+            raise (MachineFault if fault else InvalidInput)(text) from None
 
 
 class LammpsRefusal(Exception):
@@ -95,6 +103,8 @@ def lammps_file(path: Path, name: str) -> str:
 
 @cache
 def _lammps_class() -> type:
+    _check_room()
+
     class Lammps(lammps_module().lammps):  # type: ignore[misc]
         """LAMMPS' class with whole error messages: 4Feb2025 cuts them after 99 characters."""
 
@@ -105,6 +115,12 @@ def _lammps_class() -> type:
             return LammpsRefusal(message.value.decode())
 
     return Lammps
+
+
+def _check_room() -> None:
+    """Without room for its files Open MPI would end the process with a page of messages."""
+    names = (os.environ.get(name) for name in ("TMPDIR", "TEMP", "TMP"))
+    check_room(Path(next(filter(None, names), "/tmp")), MPI_ROOM)
 
 
 def load_plugin(lmp: Any) -> None:

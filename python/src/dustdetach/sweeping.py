@@ -29,7 +29,7 @@ from typing import Any, cast
 
 from .errors import DustError, InvalidInput, LammpsBusy, LammpsMissing, shown
 from .files import as_path, file_error, make_folder, replace_file
-from .impact import Impact
+from .impact import Impact, as_impact
 from .places import find_deck, lammps_library, plugin_if_any
 from .result import Result, read_result, write_csv
 from .runner import DECKS, run
@@ -126,10 +126,7 @@ def _impacts(cases: Iterable[Impact]) -> list[Impact]:
         listed = list(cases)
     except TypeError:
         raise InvalidInput(f"sweep: {shown(cases)} is not a list of impacts") from None
-    for case in listed:
-        if not isinstance(case, Impact):
-            raise InvalidInput(f"sweep: {shown(case)} is not an Impact")
-    return list(dict.fromkeys(listed))
+    return list(dict.fromkeys(as_impact(case, "sweep") for case in listed))
 
 
 def _jobs(jobs: int) -> int:
