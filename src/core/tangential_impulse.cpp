@@ -28,7 +28,8 @@ bool may_release(const GrainTable &table, const PastCollision &past)
 class Impulse {
  public:
   Impulse(const GrainTable &grains, const PastCollision &collision) :
-      table(grains), past(collision), friction(grains.material().friction), rp(grains.carrier_radius()),
+      past(collision), friction(grains.material().friction), theta_crit(grains.material().rolling),
+      rp(grains.carrier_radius()),
       spins(dot(past.spin_before, past.spin_before) > 0.0 || dot(past.spin_after, past.spin_after) > 0.0)
   {
   }
@@ -53,18 +54,27 @@ class Impulse {
 
     double slip[3];
     for (int d = 0; d < 3; d++) slip[d] = velocity[d] - ground[d];
-    const double s2 = dot(slip, slip), taken = std::max(0.0, friction * (2.0 * c * past.duration - dvn));
-    const bool rolls = taken * taken >= TO_ROLL * TO_ROLL * s2;
-    const double part = rolls ? TO_ROLL : taken / std::sqrt(s2);
+    const double part = part_taken(site, dvn, std::sqrt(dot(slip, slip)));
     for (int d = 0; d < 3; d++) velocity[d] -= part * slip[d];
     return dot(velocity, velocity) > needed;
   }
 
  private:
-  const GrainTable &table;
   const PastCollision &past;
-  const double friction, rp;
+  const double friction, theta_crit, rp;
   const bool spins;
+
+  // of the slip, by friction
+  double part_taken(const GrainTable::Site &site, double dvn, double slip) const
+  {
+    const double held = site.hold * past.duration, sliding = friction * (2.0 * held - dvn);    // J
+    if (!(sliding > 0.0)) return 0.0;
+    if (sliding <= TO_ROLL * slip) return sliding / slip;
+    const double pivot =
+        2.0 * theta_crit * rp / site.shell * (held + std::sqrt(held * std::max(0.0, held - dvn)));    // K
+    const double rolling = TO_ROLL * slip + (1.0 - TO_ROLL) * std::min(slip, pivot);
+    return slip > 0.0 ? std::min(sliding, rolling) / slip : 0.0;
+  }
 };
 
 void releases(const GrainTable &table, const PastCollision &past, const uint64_t *attached, bool /*located*/,

@@ -141,9 +141,15 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
       if (impulse) {
         // friction's momentum, at most what makes a solid sphere roll that spins and slides at first
         const Vec slip = vt0 - cross(g.radius * h.spin + texture.carrier_radius * spin1, n0);
-        const double pushed = m.friction * (2.0 * fc * contact_time - mass * dot(dv, n0));
-        const double to_roll = size(slip) / (1.0 / mass + g.radius * g.radius / (0.4 * mass * g.radius * g.radius));
-        const double taken = std::max(0.0, std::min(pushed, to_roll)) / mass;
+        const double pulled = mass * dot(dv, n0), held = fc * contact_time;
+        const double pushed = m.friction * (2.0 * held - pulled);
+        const double inertia = 0.4 * mass * g.radius * g.radius, lever = g.radius * g.radius / inertia;
+        const double to_roll = size(slip) / (1.0 / mass + lever);
+        // while it rolls, the moment of its pivots and the force of friction on it in a ratio that keeps it rolling
+        const double pivots =
+            2.0 * (held + std::sqrt(held * std::max(0.0, held - pulled))) * r12 * m.rolling / g.radius;
+        const double on = std::min(pivots, mass * size(slip)) * lever / (1.0 / mass + lever);
+        const double taken = std::max(0.0, std::min(pushed, to_roll + on)) / mass;
         vt = size(slip) > 0.0 ? vt0 - taken / size(slip) * slip : vt0;
       }
       if (mass * dot(vt, vt) / r_pd > fc) {
