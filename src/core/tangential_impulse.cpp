@@ -16,79 +16,165 @@ namespace {
 
 constexpr double TO_ROLL = 2.0 / 7.0;    // of the slip of a solid sphere
 
-// v_t lies between v_t0 and what rolls along with a surface that no friction has slowed, both below this
-bool may_release(const GrainTable &table, const PastCollision &past)
-{
-  const double *dv = past.dv, *spin0 = past.spin_before, *spin = past.spin_after;
-  const double max_spin = std::sqrt(std::max(dot(spin0, spin0), dot(spin, spin)));
-  const double fastest = std::sqrt(dot(dv, dv)) + table.max_shell() * max_spin;
-  return !(fastest * fastest <= table.min_critical_velocity2());
-}
+/* ----------------------------------------------------------------------
+   shares of the collision that are over at the phase tau of half a sine
+------------------------------------------------------------------------- */
+
+struct Phase {
+  double time;        // of Dt
+  double sine;        // of the largest acceleration
+  double velocity;    // of Dv
+  double way;         // of Dt Dv, what that has moved
+
+  explicit Phase(double tau) :
+      time(tau / PI), sine(std::sin(tau)), velocity(0.5 * (1.0 - std::cos(tau))), way(0.5 * (tau - std::sin(tau)) / PI)
+  {
+  }
+};
+
+// close enough that one between them would add no grain to a thousand
+const std::vector<Phase> PHASES = [] {
+  constexpr int EACH = 12;
+  std::vector<Phase> phases;
+  for (int k = EACH / 4; k <= EACH; k++) phases.emplace_back(PI * k / EACH);
+  return phases;
+}();
+
+/* ---------------------------------------------------------------------- */
 
 class Impulse {
  public:
   Impulse(const GrainTable &grains, const PastCollision &collision) :
-      past(collision), friction(grains.material().friction), theta_crit(grains.material().rolling),
-      rp(grains.carrier_radius()),
-      spins(dot(past.spin_before, past.spin_before) > 0.0 || dot(past.spin_after, past.spin_after) > 0.0)
+      table(grains), past(collision), speed(std::sqrt(dot(past.dv, past.dv))),
+      max_spin2(std::max(dot(past.spin_before, past.spin_before), dot(past.spin_after, past.spin_after))),
+      amplitude(std::min(0.5 * PI / past.duration, past.peak / speed)), way(max_spin2 > 0.0 ? 1.0 : 0.5),
+      drift(max_spin2 > 0.0 ? 0.92 : 0.2916)
   {
   }
 
-  // whether a grain leaves, and then with which velocity
-  bool releases(const GrainTable::Site &site, double *velocity) const
+  // false only if no grain leaves, or none of a patch
+  bool may_release() const { return may_release(speed, speed, table.min_hold()); }
+  bool may_release(const GrainTable::Patch &patch) const
   {
-    const double *n = site.n, c = site.hold, needed = c * site.shell;
-    const double dvn = dot(past.dv, n);
-    double ground[3] = {0.0, 0.0, 0.0};    // velocity at which a grain does not slip that friction does not spin
-    for (int d = 0; d < 3; d++) velocity[d] = past.dv[d] - dvn * n[d];
-    if (spins) {
-      double before[3], after[3];
-      cross(past.spin_before, n, before);
-      cross(past.spin_after, n, after);
+    const double dvn = dot(past.dv, patch.centre), change = speed * patch.radius;
+    const double min_dvn = std::max(0.0, std::fabs(dvn) - change);
+    return may_release(dvn + change, std::sqrt(std::max(0.0, speed * speed - min_dvn * min_dvn)), patch.min_hold);
+  }
+
+  // whether a grain leaves and, if that is wanted, where and with which velocity
+  bool releases(const GrainTable::Site &site, bool located, Release &release) const
+  {
+    Slide slide;
+    slide.dvn = dot(past.dv, site.n);
+    for (int d = 0; d < 3; d++) slide.after[d] = past.dv[d] - slide.dvn * site.n[d];
+    double ground[3] = {0.0, 0.0, 0.0};    // velocity at which a grain does not slip that friction has not spun
+    if (max_spin2 > 0.0) {
+      double turned[3];
+      cross(past.spin_before, site.n, slide.before);
+      cross(past.spin_after, site.n, turned);
+      const double rp = table.carrier_radius();
       for (int d = 0; d < 3; d++) {
-        velocity[d] += site.shell * before[d];
-        ground[d] = (site.shell - rp) * before[d] + rp * after[d];
+        ground[d] = (site.shell - rp) * slide.before[d] + rp * turned[d];
+        slide.before[d] *= site.shell;
+        slide.after[d] += slide.before[d];
       }
     }
-    if (std::max(dot(velocity, velocity), dot(ground, ground)) <= needed) return false;
+    const double fastest2 =
+        std::max({dot(slide.after, slide.after), dot(ground, ground), dot(slide.before, slide.before)});
+    if (outward_bound(slide.dvn, std::sqrt(fastest2), site.shell) <= site.hold) return false;
 
     double slip[3];
-    for (int d = 0; d < 3; d++) slip[d] = velocity[d] - ground[d];
-    const double part = part_taken(site, dvn, std::sqrt(dot(slip, slip)));
-    for (int d = 0; d < 3; d++) velocity[d] -= part * slip[d];
-    return dot(velocity, velocity) > needed;
+    for (int d = 0; d < 3; d++) slip[d] = slide.after[d] - ground[d];
+    const double part = part_taken(site, slide.dvn, std::sqrt(dot(slip, slip)));
+    for (int d = 0; d < 3; d++) slide.after[d] -= part * slip[d];
+    const double end2 = dot(slide.after, slide.after), most2 = std::max(end2, dot(slide.before, slide.before));
+    if (outward_bound(slide.dvn, std::sqrt(most2), site.shell) <= site.hold) return false;
+    if (!located && end2 > site.hold * site.shell) return true;
+    if (!may_come_round(slide.dvn, std::sqrt(most2), site.shell)) return leaves(site, slide, PHASES.back(), release);
+    return std::any_of(PHASES.begin(), PHASES.end(),
+                       [&](const Phase &phase) { return leaves(site, slide, phase, release); });
   }
 
  private:
+  const GrainTable &table;
   const PastCollision &past;
-  const double friction, theta_crit, rp;
-  const bool spins;
+  const double speed, max_spin2;    // |Dv|; of omega, squared
+  const double amplitude;           // of -a, over Dv
+  const double way, drift;    // bounds of the share `way` and, times pi/2, of sine times way; with spin, of `time`
+
+  // a grain's velocity relative to the carrier's centre, before the collision and v_t
+  struct Slide {
+    double dvn, before[3] = {0.0, 0.0, 0.0}, after[3];
+  };
+
+  // whether grains may leave with a largest Dv.n and [Dv]_t, and a least c
+  bool may_release(double max_dvn, double max_dvt, double min_hold) const
+  {
+    // the velocity of a grain lies between v_t0, what it is carried along with and what that was
+    const double fastest = max_dvt + table.max_shell() * std::sqrt(max_spin2);
+    return !(outward_bound(max_dvn, fastest, table.carrier_radius()) <= min_hold);
+  }
+  // whether a grain that is never faster may come to the side from which inertia lifts it: where not, F_n only grows
+  bool may_come_round(double dvn, double fastest, double shell) const
+  {
+    return dvn + way * past.duration * speed * fastest / shell > 0.0;
+  }
+  // F_n/m_d is at most this
+  double outward_bound(double dvn, double fastest, double shell) const
+  {
+    const double centrifugal = fastest * fastest / shell;
+    if (!may_come_round(dvn, fastest, shell)) return centrifugal;
+    return amplitude * std::max(0.0, dvn) + drift * speed * fastest / shell + centrifugal;
+  }
 
   // of the slip, by friction
   double part_taken(const GrainTable::Site &site, double dvn, double slip) const
   {
-    const double held = site.hold * past.duration, sliding = friction * (2.0 * held - dvn);    // J
+    const Material &m = table.material();
+    const double held = site.hold * past.duration, sliding = m.friction * (2.0 * held - dvn);    // J
     if (!(sliding > 0.0)) return 0.0;
     if (sliding <= TO_ROLL * slip) return sliding / slip;
-    const double pivot =
-        2.0 * theta_crit * rp / site.shell * (held + std::sqrt(held * std::max(0.0, held - dvn)));    // K
+    const double lever = 2.0 * m.rolling * table.carrier_radius() / site.shell;
+    const double pivot = lever * (held + std::sqrt(held * std::max(0.0, held - dvn)));    // K
     const double rolling = TO_ROLL * slip + (1.0 - TO_ROLL) * std::min(slip, pivot);
     return slip > 0.0 ? std::min(sliding, rolling) / slip : 0.0;
   }
+
+  bool leaves(const GrainTable::Site &site, const Slide &slide, const Phase &phase, Release &release) const
+  {
+    double *n = release.direction, *w = release.velocity;
+    for (int d = 0; d < 3; d++) {
+      const double change = slide.after[d] - slide.before[d];
+      w[d] = slide.before[d] + phase.velocity * change;
+      n[d] = site.n[d] + past.duration / site.shell * (phase.time * slide.before[d] + phase.way * change);
+    }
+    const double w2 = dot(w, w);
+    if (amplitude * phase.sine * dot(past.dv, n) + w2 / site.shell <= site.hold) return false;
+    // on the sphere
+    const double inv_size = 1.0 / std::sqrt(dot(n, n));
+    for (int d = 0; d < 3; d++) n[d] *= inv_size;
+    const double along = dot(w, n), left = w2 - along * along, longer = left > 0.0 ? std::sqrt(w2 / left) : 0.0;
+    for (int d = 0; d < 3; d++) w[d] = longer * (w[d] - along * n[d]);
+    return true;
+  }
 };
 
-void releases(const GrainTable &table, const PastCollision &past, const uint64_t *attached, bool /*located*/,
+/* ---------------------------------------------------------------------- */
+
+bool may_release(const GrainTable &table, const PastCollision &past) { return Impulse(table, past).may_release(); }
+
+void releases(const GrainTable &table, const PastCollision &past, const uint64_t *attached, bool located,
               std::vector<Release> &released)
 {
   const Impulse impulse(table, past);
-  for (int word = 0; word < table.words(); word++)
+  for (int word = 0; word < table.words(); word++) {
+    if (!attached[word] || !impulse.may_release(table.patch(word))) continue;
     each_bit(attached[word], [&](int k) {
-      const int bit = word * PATCH + k;
-      const GrainTable::Site &site = table.site(bit);
-      double velocity[3];
-      if (!impulse.releases(site, velocity)) return;
-      released.push_back({bit, {site.n[0], site.n[1], site.n[2]}, {velocity[0], velocity[1], velocity[2]}});
+      Release release;
+      release.bit = word * PATCH + k;
+      if (impulse.releases(table.site(release.bit), located, release)) released.push_back(release);
     });
+  }
 }
 
 }    // namespace

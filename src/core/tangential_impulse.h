@@ -30,6 +30,15 @@ namespace Dust {
  *   v_t0 = [Dv + omega_contact x r_pd]_t,    s0 = v_t0 - (R_d omega_contact + R_p omega_rebound) x n
  *   v_t = v_t0 - q s0/|s0|,    q = min(J, 2/7 |s0| + 5/7 min(K, |s0|)),    and a grain leaves if v_t^2/|r_pd| > c.
  *
+ * A grain that slides or rolls towards the contact comes to the side from which inertia lifts it, or is faster there, and
+ * leaves before the end: grains from just beyond those that lift off where they sit. For them the acceleration is taken
+ * to go as half a sine along Dv, with the largest |a| at most, and the velocity as that: at tau = 0 to pi
+ *
+ *   -a = min(pi/(2 Dt), |a|_max/|Dv|) sin(tau) Dv,    w = w0 + (1 - cos(tau))/2 (v_t - w0),    w0 = omega_contact x r_pd,
+ *   n + Dt/(pi |r_pd|) (tau w0 + (tau - sin(tau))/2 (v_t - w0)) for n,    and a grain leaves if -a.n + w^2/|r_pd| > c.
+ *
+ * At tau = pi that is the test above.
+ *
  * While a keeps its direction, slip and J grow together, so that their values at the end tell whether the grain rolled
  * all the time. Left out: that it rolls with less friction than J while a is small (0.5 % of v_t), the centrifugal part
  * of F_n and the motion along n. */

@@ -62,7 +62,7 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
   std::vector<Vec> spin(h.a.size());
   Vec now = h.spin;
   size_t first = 0, lively = 0;    // of the burst, and the last of it
-  double peak = 0.0;
+  double peak = 0.0;               // |a|
   bool rests = false, weak = true;
   for (size_t k = 0; k < h.a.size() && !rests; k++) {
     const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
@@ -151,8 +151,20 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
         const double on = std::min(pivots, mass * size(slip)) * lever / (1.0 / mass + lever);
         const double taken = std::max(0.0, std::min(pushed, to_roll + on)) / mass;
         vt = size(slip) > 0.0 ? vt0 - taken / size(slip) * slip : vt0;
+        // half a sine in twelve parts; it has no grain to lift in the first of them that stays where it is
+        const Vec w0 = cross(h.spin, r);
+        const double most = mass * std::min(0.5 * M_PI * size(dv) / contact_time, peak);
+        for (int k = 3; k < 12 && attached && size(dv) > 0.0; k++) {
+          const double tau = k * M_PI / 12.0, omega = M_PI / contact_time;
+          const Vec w = w0 + std::pow(std::sin(0.5 * tau), 2) * (vt - w0);
+          const Vec moved = tau / omega * w0 + 0.5 / omega * (tau - std::sin(tau)) * (vt - w0);
+          const Vec now = n0 + 1.0 / r_pd * moved, lift = most * std::sin(tau) / size(dv) * dv;
+          if (dot(lift, now) + mass * dot(w, w) / r_pd <= fc) continue;
+          out.left[i] = {out.steps, TANGENTIAL};
+          attached = false;
+        }
       }
-      if (mass * dot(vt, vt) / r_pd > fc) {
+      if (attached && mass * dot(vt, vt) / r_pd > fc) {
         out.left[i] = {out.steps, TANGENTIAL};
         attached = false;
       }
