@@ -1,14 +1,14 @@
-"""What fix dust/detach costs in beds: share of the loop time in in.drum, cost per carrier from a thousand to a million of them,
-memory per carrier, and two ranks against one.
+"""What fix dust/detach costs in beds: share of the loop time in in.drum, cost per carrier from a thousand to a
+million of them, memory per carrier, and two ranks against one.
 
     . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts drum,ranks,scaling] [--out FILE]
 
-Segments with and without the fix follow each other in one run, which does not depend on the fix; the fastest of each, the least
-disturbed ones, are compared. A segment with the fix starts when the fix has been there for 60 steps. Drum: in.drum,
-filled, settled and turned for a while. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a direction,
-no losses, contacts softened 1000 times), in which every carrier is in the same state whatever their number. Memory: by how much
-the largest resident size of the process grows with the fix. Ranks: the gas.
-Other work on the machine disturbs all this.
+Segments with and without the fix follow each other in one run, which does not depend on the fix; the fastest of each,
+the least disturbed ones, are compared. A segment with the fix starts when the fix has been there for 60 steps. Drum:
+in.drum, filled, settled and turned for a while. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a
+direction, no losses, contacts softened 1000 times), in which every carrier is in the same state whatever their
+number. Memory: by how much the largest resident size of the process grows with the fix. Ranks: the gas. Other work on
+the machine disturbs all this.
 """
 
 import argparse
@@ -105,7 +105,7 @@ def drum(pairs: int = 12, steps: int = 400, warm: int = 10_000) -> dict[str, flo
 
 
 def ranks(repeats: int = 4) -> dict[str, float]:
-    """100,000 carriers of the gas with the fix on one rank and on two in turn, the fastest of each; needs both cores for itself."""
+    """100,000 carriers of the gas with the fix on one rank and on two in turn, the fastest of each; needs two cores."""
     x, y, z = SIZES[100_000]
     deck = GAS.format(x=x, y=y, z=z, warm=60) + DUST + "run 300\n"
     times = [[run(deck, n)[0][-1] / 300 for n in (1, 2)] for _ in range(repeats)]

@@ -1,4 +1,5 @@
-"""Pictures of the decks of beds, doc/images/drum.png, drop.png and pour.png: runs the decks in a folder, unless done, and draws.
+"""Pictures of the decks of beds, doc/images/drum.png, drop.png and pour.png: runs the decks in a folder, unless done,
+and draws.
 
     . build/environment; build/venv/bin/python benchmarks/bed_pictures.py --work WORK [drum drop pour]
 """

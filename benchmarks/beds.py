@@ -2,11 +2,11 @@
 
     . build/environment; build/venv/bin/python benchmarks/beds.py [--carriers N] [--steps N] [--out FILE]
 
-At rest: the settled heap stays in its tube for a million steps. Fall: the heap falls from 1 m with several texture seeds,
-and, with seed 1, on another number of ranks, with other output, with another skin of the neighbour lists, in the fall alone
-and from the start, which makes another heap. A bed is chaotic: what changes the last digit of a force changes what each
-carrier does, so that these are compared with the scatter over the seeds. The same run twice must detach the same grains, down to
-the last digit of every row. Writes FILE and prints it in words.
+At rest: the settled heap stays in its tube for a million steps. Fall: the heap falls from 1 m with several texture
+seeds, and, with seed 1, on another number of ranks, with other output, with another skin of the neighbour lists, in
+the fall alone and from the start, which makes another heap. A bed is chaotic: what changes the last digit of a force
+changes what each carrier does, so that these are compared with the scatter over the seeds. The same run twice must
+detach the same grains, down to the last digit of every row. Writes FILE and prints it in words.
 """
 
 import argparse
@@ -27,7 +27,7 @@ AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def run(carriers: int, ranks: int = 1, fall: str = "", **variables: str) -> dict:
-    """Mass that comes off at rest (kg), the fall's dispersion ratio and its detachments (sorted); ``fall``: command for it."""
+    """Mass that comes off at rest (kg), the fall's dispersion ratio and its rows (sorted); ``fall``: command for it."""
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.drop"
         # every detachment, to the last digit
@@ -42,7 +42,8 @@ def run(carriers: int, ranks: int = 1, fall: str = "", **variables: str) -> dict
         done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, check=True)
         masses = re.search(r"at rest (\S+) kg came off, by the fall (\S+) kg of (\S+) kg", done.stdout)
         rest, lost, total = map(float, masses.groups())
-        rows = sorted(line for line in (Path(folder) / "rows").read_text().splitlines() if line.count(" ") >= 10 and line[0] != "I")
+        lines = (Path(folder) / "rows").read_text().splitlines()
+        rows = sorted(line for line in lines if line.count(" ") >= 10 and line[0] != "I")
     return {"rest": rest, "ratio": lost / total, "rows": rows}
 
 
@@ -61,7 +62,8 @@ def falls(carriers: int, seeds: int) -> dict:
     """Dispersion ratios of the fall over the seeds, and of seed 1 with other settings."""
     runs = [run(carriers, seed=str(seed)) for seed in range(1, seeds + 1)]
     ratios = [one["ratio"] for one in runs]
-    result = {"seeds": ratios, "mean": statistics.mean(ratios), "standard_deviation": statistics.stdev(ratios), "seed 1": {}}
+    spread = {"mean": statistics.mean(ratios), "standard_deviation": statistics.stdev(ratios)}
+    result = {"seeds": ratios, **spread, "seed 1": {}}
     print(f"{seeds} seeds: {result['mean']:.5f}, standard deviation {result['standard_deviation']:.5f}, "
           f"range {min(ratios):.5f} to {max(ratios):.5f}", flush=True)
     for name, changes in OTHERS.items():

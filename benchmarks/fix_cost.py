@@ -3,10 +3,9 @@
     . build/environment; build/venv/bin/python benchmarks/fix_cost.py [--repeat N] [--out FILE]
 
 The deck runs with and without the fix in turn, so that whatever else the machine does hits both; the fastest run of
-each, the least disturbed one, is compared.
-Contact: the deck as it is, 0.2 to 20 m/s, for the 2300 steps in which all hundred carriers touch the wall: they lose up to
-93 % of their grains meanwhile. Then the same at 60 degrees, also with a wall friction that makes the acceleration turn. Free
-flight: no carrier touches the wall in 200,000 steps.
+each, the least disturbed one, is compared. Contact: the deck as it is, 0.2 to 20 m/s, for the 2300 steps in which all
+hundred carriers touch the wall: they lose up to 93 % of their grains meanwhile. Then the same at 60 degrees, also
+with a wall friction that makes the acceleration turn. Free flight: no carrier touches the wall in 200,000 steps.
 Instructions are counted besides if valgrind is there: they do not depend on the machine's load.
 """
 
@@ -92,7 +91,8 @@ def main() -> None:
             result[case] = row
             print(f"{case}: the fix takes {100 * row['fix_share_of_loop']:.1f} % of the loop time, "
                   f"{row['fix_against_rest']:.2f} of the rest of the step"
-                  + (f"; {100 * row['instructions_fix_share']:.1f} % of the instructions" if "instructions_fix" in row else ""))
+                  + (f"; {100 * row['instructions_fix_share']:.1f} % of the instructions"
+                     if "instructions_fix" in row else ""))
     if args.out:
         args.out.write_text(json.dumps(result, indent=1) + "\n")
 

@@ -3,11 +3,11 @@
     . build/environment
     build/venv/bin/python benchmarks/impacts.py run --work DIR [--jobs N] [NAME ...]    hours; goes on where it stopped
     build/venv/bin/python benchmarks/impacts.py run --functions --work DIR [NAME ...]   half a minute
-    build/venv/bin/python benchmarks/impacts.py compare                                 seconds, from the tables in impacts/
+    build/venv/bin/python benchmarks/impacts.py compare                            seconds, from the tables in impacts/
 
 `run` copies the table of each NAME.toml (all by default) to impacts/NAME.csv, with machine and versions in
-impacts/machine.json; with --functions the rows of the resolved runs stay as they are, as does machine.json. `compare` writes
-impacts/comparison.md and the figures beside it.
+impacts/machine.json; with --functions the rows of the resolved runs stay as they are, as does machine.json. `compare`
+writes impacts/comparison.md and the figures beside it.
 """
 
 import argparse
@@ -175,13 +175,17 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     yield ""
     resolved = [row for row in rows if row.method == "resolved"]
     ends = {end: sum(row.end == end for row in resolved) for end in sorted({row.end for row in resolved})}
-    yield f"{len(resolved)} resolved impacts of {resolved[0].grains} grains, LAMMPS {resolved[0].lammps_version}; ended by "
+    version = resolved[0].lammps_version
+    yield f"{len(resolved)} resolved impacts of {resolved[0].grains} grains, LAMMPS {version}; ended by "
     yield (", ".join(f"*{end}*: {count}" for end, count in ends.items()) + ". Written by `impacts.py compare`.")
     yield ""
 
     yield "## Agreement"
     yield ""
-    yield "Differences of the fraction of the initial dust mass, tangential lift-off by `estimate`, same inputs on both sides."
+    yield (
+        "Differences of the fraction of the initial dust mass, tangential lift-off by `estimate`, "
+        "same inputs on both sides."
+    )
     yield ""
     head = [
         "impacts",
@@ -216,7 +220,10 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
         )
     )
     yield from table(head, lines)
-    yield "The same with `tangential integrate`, which follows each grain's own slide and roll, and its contact of that zeta:"
+    yield (
+        "The same with `tangential integrate`, which follows each grain's own slide and roll, "
+        "and its contact of that zeta:"
+    )
     yield ""
     followed = integrated(row for part in data.values() for row in part)
     lines = []
@@ -256,7 +263,10 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     yield from best_angle(rough)
     yield "## Other influences"
     yield ""
-    yield "Straight, e 0.7; from `influences.py`. *Tensile tail*: LAMMPS' own `coeff_restitution` on the carrier, which pulls."
+    yield (
+        "Straight, e 0.7; from `influences.py`. *Tensile tail*: LAMMPS' own `coeff_restitution` on the carrier, "
+        "which pulls."
+    )
     yield ""
     with (HERE / "influences.csv").open() as stream:
         head, *lines = csv.reader(stream)
@@ -348,8 +358,8 @@ def cases(compared: list[Pair]) -> Iterator[str]:
                 f"{f.speed:g}",
                 f.dispersion_ratio,
                 r.dispersion_ratio,
+                *[f.south, r.south, f.north, r.north, r.end, f"{r.wall_seconds:.0f}"],
             ]
-            + [f.south, r.south, f.north, r.north, r.end, f"{r.wall_seconds:.0f}"]
             for f, r in compared
         ),
     )

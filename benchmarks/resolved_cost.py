@@ -1,16 +1,18 @@
-"""What a resolved impact costs: a contact against LAMMPS' own jkr and sds, an impact against one by the detachment functions.
+"""What a resolved impact costs: a contact against LAMMPS' own jkr and sds, an impact against one by the functions.
 
-    . build/environment; build/venv/bin/python benchmarks/resolved_cost.py [--repeat N] [--parts contact,impact,skin] [--out FILE]
+    . build/environment; build/venv/bin/python benchmarks/resolved_cost.py [--repeat N] [--parts contact,impact,skin]
+        [--out FILE]
 
-All runs use the plugin in one stock LAMMPS and lammps-inputs/in.impact.resolved, cut short or with other lines where said.
-Variants run in turn, so that whatever else the machine does hits all; the fastest run of each is compared. Times are the
-CPU's: LAMMPS' wall times times the CPU use it prints below them.
-contact: Pair time by steps and grains, in free flight at rest, where each grain has one contact, and through the reference
-case's collision. The other contact is jkr + mindlin + sds + viscoelastic with the same E, eta, nu and friction; jkr's
-cohesion is gamma = A/(18 pi z0^2), as LAMMPS' pull-off force is 3 pi gamma R_eff, and sds has our stiffness and limit at
-the equilibrium overlap. In the collision the two lose different grains, so there the contacts are counted, in another run.
-impact: the whole deck, two cases, against the same impacts in in.impacts, a hundred at once, and in in.impact, again and
-again in one process.
+All runs use the plugin in one stock LAMMPS and lammps-inputs/in.impact.resolved, cut short or with other lines where
+said. Variants run in turn, so that whatever else the machine does hits all; the fastest run of each is compared. Times
+are the CPU's: LAMMPS' wall times times the CPU use it prints below them.
+contact: Pair time by steps and grains, in free flight at rest, where each grain has one contact, and through the
+reference case's collision. The other contact is jkr + mindlin + sds + viscoelastic with the same E, eta, nu and
+friction; jkr's cohesion is gamma = A/(18 pi z0^2), as LAMMPS' pull-off force is 3 pi gamma R_eff, and sds has our
+stiffness and limit at the equilibrium overlap. In the collision the two lose different grains, so there the contacts
+are counted, in another run.
+impact: the whole deck, two cases, against the same impacts in in.impacts, a hundred at once, and in in.impact, again
+and again in one process.
 skin: the first 9 us, through the collision, by neighbor skin in grain diameters; no skin changes what detaches.
 Instructions are counted besides if valgrind is there: they do not depend on the machine's load.
 """
@@ -292,11 +294,13 @@ def impact(folder: Path, repeat: int) -> dict:
             }
             print(
                 f"{case}, {label}: {1e3 * loop:.2f} ms of loop an impact, {1e3 * process:.2f} ms of the process; "
-                f"resolved takes {row[label]['ratio of loops']:.0f} and {row[label]['ratio of processes']:.0f} times that",
+                f"resolved takes {row[label]['ratio of loops']:.0f} and {row[label]['ratio of processes']:.0f} times "
+                "that",
                 flush=True,
             )
         print(
-            f"{case}, resolved: {run.loop_seconds:.1f} s of loop, {run.steps} steps, {row['resolved']['ms_per_step']:.2f} ms "
+            f"{case}, resolved: {run.loop_seconds:.1f} s of loop, {run.steps} steps, "
+            f"{row['resolved']['ms_per_step']:.2f} ms "
             f"a step, {row['resolved']['megabytes']:.0f} MB",
             flush=True,
         )
@@ -321,7 +325,8 @@ def skin(folder: Path, repeat: int) -> dict:
             "dispersion_ratio": run.number(r"dispersion ratio ([\d.]+)"),
         }
         print(
-            f"skin {name} grain diameters: {result[name]['ms_per_step']:.3f} ms a step, {result[name]['neigh_ms_per_step']:.3f} of them "
+            f"skin {name} grain diameters: {result[name]['ms_per_step']:.3f} ms a step, "
+            f"{result[name]['neigh_ms_per_step']:.3f} of them "
             f"for {builds} list builds, {pairs[0]} pairs, "
             f"{result[name]['megabytes']:.0f} MB, dispersion ratio {result[name]['dispersion_ratio']:.4f}",
             flush=True,

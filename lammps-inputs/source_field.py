@@ -3,10 +3,10 @@
     . build/environment; build/venv/bin/python lammps-inputs/source_field.py [--time S] [--cell M] [-var NAME VALUE]...
     mpirun -n 2 build/venv/bin/python lammps-inputs/source_field.py
 
-The deck in.drop sets the scene, up to the moment before the heap hits the plate. From there LAMMPS advances by one window of
-fix dust/detach at a time, the coupling step of a CFD code. After each, the window's local rows, one for each grain that has
-come off, give the mass and the momentum that the dust phase gains in each cell of a grid that LAMMPS knows nothing of. At
-the end the field's sum is compared with what the fix has counted.
+The deck in.drop sets the scene, up to the moment before the heap hits the plate. From there LAMMPS advances by one
+window of fix dust/detach at a time, the coupling step of a CFD code. After each, the window's local rows, one for
+each grain that has come off, give the mass and the momentum that the dust phase gains in each cell of a grid that
+LAMMPS knows nothing of. At the end the field's sum is compared with what the fix has counted.
 """
 
 import argparse
@@ -39,7 +39,7 @@ class Grid:
         self.momentum = np.zeros((*self.shape, 3))
 
     def add(self, rows: np.ndarray) -> tuple[float, np.ndarray]:
-        """Put the grains of some rows into their cells, those outside into the nearest; returns their mass and momentum."""
+        """Put the grains of rows into their cells, those outside into the nearest; returns their mass and momentum."""
         mass = np.pi / 6 * DENSITY * rows[:, DIAMETER] ** 3
         momentum = mass[:, None] * rows[:, VELOCITY]
         cells = np.floor((rows[:, POSITION] - self.low) / self.cell).astype(int)
@@ -100,7 +100,8 @@ def main() -> None:
         comm.Allreduce(grid.mass.copy(), grid.mass)
     total = grid.mass.sum()
     if first:
-        print(f"{np.count_nonzero(grid.mass)} of {grid.mass.size} cells got {total:.9e} kg, the fix counted {counted:.9e} kg")
+        cells = f"{np.count_nonzero(grid.mass)} of {grid.mass.size} cells"
+        print(f"{cells} got {total:.9e} kg, the fix counted {counted:.9e} kg")
     lmp.close()
     if abs(total - counted) > 1e-12 * counted:
         sys.exit("the source field does not hold what the fix has counted")

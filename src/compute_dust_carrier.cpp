@@ -26,8 +26,8 @@ using namespace Granular_NS;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeDustCarrier::ComputeDustCarrier(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), nmax(0), pair(nullptr), history(nullptr)
+ComputeDustCarrier::ComputeDustCarrier(LAMMPS *_lmp, int narg, char **arg) :
+    Compute(_lmp, narg, arg), nmax(0), pair(nullptr), history(nullptr)
 {
   if (narg != 4) error->all(FLERR, "Compute dust/carrier wants one value, the group of the carriers, not {}", narg - 3);
   const int carriers = group->find(arg[3]);

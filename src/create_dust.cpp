@@ -159,17 +159,18 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const Du
 
 /* ----------------------------------------------------------------------
    of a carrier that meets a wall of its material with the middle of its bare cap, as fast as it moves that way now: no
-   grain may reach the wall before the carrier's largest overlap, as it would brake the carrier
+   grain may reach the wall before the carrier's largest overlap, as it would brake the carrier. Which side that is is not
+   known where textures lie at random.
 ------------------------------------------------------------------------- */
 
 void CreateDust::warn_of_crushed_grains(const Dust::Texture &texture, const std::vector<Carrier> &carriers,
                                         const DustOptions &options, int groupbit) const
 {
+  if (!options.same_orientation()) return;
   const double R = texture.carrier_radius, E = options.elastic[2], nu = options.elastic[3];
   const double *axis = texture.bare.axis;
   double speed = 0.0;
-  for (const Carrier &c : carriers)
-    speed = std::max(speed, options.same_orientation() ? MathExtra::dot3(c.v, axis) : MathExtra::len3(c.v));
+  for (const Carrier &c : carriers) speed = std::max(speed, MathExtra::dot3(c.v, axis));
   double mass = 0.0;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit) mass = std::max(mass, atom->rmass[i]);
@@ -179,7 +180,7 @@ void CreateDust::warn_of_crushed_grains(const Dust::Texture &texture, const std:
   int crushed = 0;
   double widest = 0.0;    // half-angle of the cap that would be needed
   for (const Dust::Grain &grain : texture.grains) {
-    const double level = (R - overlap - grain.radius) / (R + grain.radius);
+    const double level = std::max(-1.0, (R - overlap - grain.radius) / (R + grain.radius));
     if (MathExtra::dot3(grain.n, axis) <= level) continue;
     crushed++;
     widest = std::max(widest, std::acos(level));

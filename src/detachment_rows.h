@@ -6,6 +6,7 @@
 #define LMP_DUST_DETACHMENT_ROWS_H
 
 #include "detach_columns.h"
+#include "dust_gather.h"
 
 #include <algorithm>
 #include <array>
@@ -36,13 +37,29 @@ class DetachmentRows {
   double **pointers() { return row_pointers.data(); }
   int size() const { return static_cast<int>(complete.size()); }
 
-  // both windows, for a restart file
-  const std::vector<Row> &present() const { return under_way; }
-  const std::vector<Row> &last() const { return complete; }
-  void set(std::vector<Row> present, std::vector<Row> last)
+  // appends those of all ranks to what rank 0 writes into a restart file; false if they are too many and left out
+  bool save(std::vector<double> &list, MPI_Comm world) const
   {
-    under_way = std::move(present);
-    complete = std::move(last);
+    constexpr double MOST = 2.0e9;    // LAMMPS counts the bytes of a fix's restart data as int
+    double bytes = double(under_way.size() + complete.size()) * sizeof(Row);
+    MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_SUM, world);
+    for (const auto *window : {&under_way, &complete}) {
+      const auto all = bytes < MOST ? dust_gather(*window, 0, world) : std::vector<Row>();
+      list.push_back(double(all.size()));
+      for (const Row &row : all) list.insert(list.end(), row.begin(), row.end());
+    }
+    return bytes < MOST;
+  }
+  // takes them if they are to be this rank's
+  void restore(const double *list, bool mine)
+  {
+    for (auto *window : {&under_way, &complete}) {
+      window->resize(mine ? static_cast<size_t>(*list++) : 0);
+      for (Row &row : *window) {
+        std::copy_n(list, row.size(), row.begin());
+        list += row.size();
+      }
+    }
     show();
   }
 

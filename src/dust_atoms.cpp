@@ -12,7 +12,7 @@
 
 using namespace LAMMPS_NS;
 
-DustAtoms::DustAtoms(LAMMPS *lmp) : Pointers(lmp), before(atom->nlocal)
+DustAtoms::DustAtoms(LAMMPS *_lmp) : Pointers(_lmp), before(atom->nlocal)
 {
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
   atom->nghost = 0;    // new atoms take their places
@@ -60,6 +60,9 @@ void DustAtoms::create(int type, tagint tag, const double *place, double radius,
   atom->rmass[i] = mass;
   std::copy_n(v, 3, atom->v[i]);
   std::copy_n(omega, 3, atom->omega[i]);
+  // a run may go on from here without computing forces first
+  std::fill_n(atom->f[i], 3, 0.0);
+  if (atom->torque_flag) std::fill_n(atom->torque[i], 3, 0.0);
 }
 
 /* ---------------------------------------------------------------------- */

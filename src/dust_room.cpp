@@ -19,8 +19,8 @@ using namespace LAMMPS_NS;
 // a grain touches its carrier when it leaves: less than this part of their distance is no overlap
 static constexpr double TOUCH = 1.0e-6;
 
-DustRoom::DustRoom(LAMMPS *lmp, std::vector<Sphere> list) :
-    Pointers(lmp), spheres(std::move(list)), along(spheres.size()), axis(0), largest(0.0)
+DustRoom::DustRoom(LAMMPS *_lmp, std::vector<Sphere> list) :
+    Pointers(_lmp), spheres(std::move(list)), along(spheres.size()), axis(0), largest(0.0)
 {
   for (int d = 1; d < 3; d++)
     if (domain->prd[d] > domain->prd[axis]) axis = d;

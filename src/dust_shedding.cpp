@@ -23,8 +23,8 @@
 
 using namespace LAMMPS_NS;
 
-DustShedding::DustShedding(LAMMPS *lmp, Fix *fix, int emit) :
-    Pointers(lmp), fix(fix), emit(emit), clock(0.0), changed(false), highest(0), slot(nullptr)
+DustShedding::DustShedding(LAMMPS *_lmp, Fix *_fix, int _emit) :
+    Pointers(_lmp), fix(_fix), emit(_emit), clock(0.0), changed(false), highest(0), slot(nullptr)
 {
   if (emit && !atom->tag_enable) error->all(FLERR, "Fix dust/detach emit {} needs atom IDs: atom_modify id yes", emit);
 }

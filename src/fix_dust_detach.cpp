@@ -5,7 +5,6 @@
 #include "fix_dust_detach.h"
 
 #include "dust_atoms.h"
-#include "dust_gather.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -28,11 +27,10 @@ static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grai
 
 /* ---------------------------------------------------------------------- */
 
-FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), carrier_radius(0.0),
-    texture_checksum(0.0), state(nullptr), attached(nullptr), orientation(nullptr), angle(nullptr),
-    window_mass(nullptr), steps(0.0), began(nullptr), newcomers(true), mine{}, shedding(lmp, this, settings.emit),
-    exchange_room(0)
+FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
+    Fix(_lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings),
+    carriers(lmp, settings.rotation, settings.rotation || !settings.same_orientation()), steps(0.0), newcomers(true),
+    mine{}, shedding(lmp, this, settings.emit), exchange_room(0)
 {
   collisions.work.locate = settings.keep_rows || settings.lose_mass;
   checks.check_order();    // of what is there already; the rest before a run
@@ -55,8 +53,8 @@ FixDustDetach::FixDustDetach(LAMMPS *lmp, int narg, char **arg) :
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
   grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
-  carrier_radius = settings.carrier_radius(igroup);
-  if (carrier_radius > 0.0) build();
+  coat.radius = settings.carrier_radius(igroup);
+  if (coat.radius > 0.0) build();
   // last, as an error above leaves no fix behind that could be called back
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -70,13 +68,6 @@ FixDustDetach::~FixDustDetach()
     atom->delete_callback(id, Atom::GROW);
     atom->delete_callback(id, Atom::RESTART);
   }
-  memory->destroy(state);
-  memory->destroy(attached);
-  memory->destroy(orientation);
-  memory->destroy(angle);
-  memory->destroy(window_mass);
-  memory->destroy(began);
-  memory->destroy(array_atom);
 }
 
 /* ----------------------------------------------------------------------
@@ -85,28 +76,15 @@ FixDustDetach::~FixDustDetach()
 
 void FixDustDetach::build()
 {
-  texture = settings.texture(carrier_radius);
-  const Dust::Material material = {settings.density,  settings.surface_energy, settings.modulus(),
-                                   settings.friction, settings.rolling,        settings.damping};
-  functions = std::make_unique<Dust::GrainTable>(texture, material, settings.criteria);
-
-  // a number that tells this texture from another one in a restart file
-  texture_checksum = 0.0;
-  int i = 0;
-  for (const Dust::Grain &g : texture.grains)
-    texture_checksum += std::cos(++i) * (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / carrier_radius);
-
-  memory->destroy(attached);
-  grow_arrays(atom->nmax);
+  coat.make(settings);
+  carriers.set_words(coat.table->words());
   maxexchange = fixed_size() + 1 + exchange_room;
   adopt();
-  settings.save(texture);
-
-  if (comm->me == 0) {
+  settings.save(coat.texture);
+  if (comm->me == 0)
     utils::logmesg(
         lmp, "Fix dust/detach {}: {} grains a carrier, mean mass {:.5g}, pull-off acceleration {:.5g} to {:.5g}\n", id,
-        functions->grains(), functions->mean_mass(), functions->min_hold(), functions->max_hold());
-  }
+        coat.table->grains(), coat.table->mean_mass(), coat.table->min_hold(), coat.table->max_hold());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -120,21 +98,21 @@ void FixDustDetach::init()
   checks.before_run();
   shedding.check_deck();
 
-  if (functions) {
+  if (coat) {
     const double radius = settings.carrier_radius(igroup);
-    if (radius > 0.0 && !DustOptions::same_size(radius, carrier_radius))
+    if (radius > 0.0 && !DustOptions::same_size(radius, coat.radius))
       error->all(
           FLERR,
           "Fix dust/detach {} has a texture for carriers of diameter {}, but their diameter is now {}: set it before "
           "the fix",
-          id, 2.0 * carrier_radius, 2.0 * radius);
+          id, 2.0 * coat.radius, 2.0 * radius);
     adopt();
-  } else if ((carrier_radius = settings.carrier_radius(igroup)) > 0.0) {
+  } else if ((coat.radius = settings.carrier_radius(igroup)) > 0.0) {
     build();
   } else {
     bool inserts = false;
-    for (const char *style : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
-      inserts = inserts || !modify->get_fix_by_style(style).empty();
+    for (const char *other : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
+      inserts = inserts || !modify->get_fix_by_style(other).empty();
     if (!inserts)
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
@@ -150,10 +128,10 @@ void FixDustDetach::setup(int /*vflag*/)
 {
   const double *const *f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || state[i] != FREE_FLIGHT) continue;
+    if (!(atom->mask[i] & groupbit) || carriers.state[i] != FREE_FLIGHT) continue;
     if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0) {
-      state[i] = AT_REST;
-      began[i] = steps;
+      carriers.state[i] = AT_REST;
+      carriers.began[i] = steps;
       collide(i);
     } else
       spin_off(i);
@@ -171,12 +149,12 @@ void FixDustDetach::setup_post_neighbor() { post_neighbor(); }
 
 void FixDustDetach::post_neighbor()
 {
-  if (!functions && (carrier_radius = settings.carrier_radius(igroup)) > 0.0) build();
+  if (!coat && (coat.radius = settings.carrier_radius(igroup)) > 0.0) build();
   if (newcomers) {
     adopt();
     weigh();
   }
-  drop_lost_collisions();
+  if (collisions.any_taken()) collisions.keep_only(carriers.colliding(collisions.capacity()));
   shedding.drop_lost();
   if (settings.emit) shedding.check_new_ids();
   if (settings.lose_mass) tell_ghosts();
@@ -189,32 +167,32 @@ void FixDustDetach::post_neighbor()
 
 void FixDustDetach::adopt()
 {
-  if (!functions) return;
+  if (!coat) return;
   newcomers = false;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || state[i] != NO_CARRIER) continue;
+    if (!(atom->mask[i] & groupbit) || carriers.state[i] != NO_CARRIER) continue;
     if (settings.emit && atom->type[i] == settings.emit)
       error->one(FLERR, "Fix dust/detach emit {} is also the type of carrier {}", settings.emit, atom->tag[i]);
-    if (!DustOptions::same_size(atom->radius[i], carrier_radius))
+    if (!DustOptions::same_size(atom->radius[i], coat.radius))
       error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
-                 atom->tag[i], 2.0 * atom->radius[i], 2.0 * carrier_radius);
-    state[i] = FREE_FLIGHT;
-    std::copy(functions->all_attached().begin(), functions->all_attached().end(), attached[i]);
-    array_atom[i][DetachAtom::ATTACHED] = functions->grains();
-    mine.initial += functions->grains();
-    if (orientation) orientation[i] = settings.orientation(atom->tag[i]);
-    began[i] = NOT_WEIGHED;
+                 atom->tag[i], 2.0 * atom->radius[i], 2.0 * coat.radius);
+    carriers.state[i] = FREE_FLIGHT;
+    std::copy(coat.table->all_attached().begin(), coat.table->all_attached().end(), carriers.attached[i]);
+    array_atom[i][DetachAtom::ATTACHED] = coat.table->grains();
+    mine.initial += coat.table->grains();
+    if (carriers.orientation) carriers.orientation[i] = settings.orientation(atom->tag[i]);
+    carriers.began[i] = NOT_WEIGHED;
   }
 }
 
 // not yet where the fix is made: a restart file may bring carriers that have lost some already
 void FixDustDetach::weigh()
 {
-  if (!settings.lose_mass || !functions) return;
+  if (!settings.lose_mass || !coat) return;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (state[i] == NO_CARRIER || began[i] != NOT_WEIGHED) continue;
-    began[i] = 0.0;
-    atom->rmass[i] += functions->grains() * functions->mean_mass();
+    if (carriers.state[i] == NO_CARRIER || carriers.began[i] != NOT_WEIGHED) continue;
+    carriers.began[i] = 0.0;
+    atom->rmass[i] += coat.table->grains() * coat.table->mean_mass();
     shedding.mass_changed();
   }
 }
@@ -236,16 +214,16 @@ void FixDustDetach::initial_integrate(int /*vflag*/)
 
 void FixDustDetach::post_force(int /*vflag*/)
 {
-  if (functions) checks.look_at_sizes(carrier_radius);
+  if (coat) checks.look_at_sizes(coat.radius);
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
   const double *const rmass = atom->rmass;
   const bool spins = settings.rotation && nlocal > 0;
   const double *torque = spins ? atom->torque[0] : nullptr, *omega = spins ? atom->omega[0] : nullptr;
-  double *turned = spins ? angle[0] : nullptr;
+  double *turned = spins ? carriers.angle[0] : nullptr;
   const double dt = update->dt;
-  const int *const states = state;    // does not move in this loop
+  const int *const states = carriers.state;    // does not move in this loop
 
   const bool busy = collisions.any_taken();
 
@@ -272,7 +250,7 @@ void FixDustDetach::post_force(int /*vflag*/)
       if (!touches && states[i] <= FREE_FLIGHT) continue;
       if (touches && states[i] == AT_REST) {    // what most carriers of a bed do
         const double torque2 = spins ? squared(torque + 3 * i) : 0.0, spin2 = spins ? squared(omega + 3 * i) : 0.0;
-        if (!functions->might_move(squared(f), torque2, spin2, settings.stiffen_time * rmass[i])) continue;
+        if (!coat.table->might_move(squared(f), torque2, spin2, settings.stiffen_time * rmass[i])) continue;
       }
       if (!(mask[i] & groupbit) || states[i] == NO_CARRIER) continue;
       if (touches)
@@ -283,21 +261,9 @@ void FixDustDetach::post_force(int /*vflag*/)
         leave_contact(i);
     }
   }
-  if (spins && update->ntimestep % TURN_EVERY == 0) turn();
+  if (spins && update->ntimestep % CarrierData::TURN_EVERY == 0) carriers.turn();
   if (rows.is_open() && update->ntimestep % settings.every == 0) close_window();
   if (settings.lose_mass) tell_ghosts();
-}
-
-/* ----------------------------------------------------------------------
-   angles of a few steps may be summed, as they are small, at steps that depend on nothing else
-------------------------------------------------------------------------- */
-
-void FixDustDetach::turn()
-{
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (state[i] != NO_CARRIER) orientation[i].turn_by(angle[i], 1.0);
-    std::fill_n(angle[i], 3, 0.0);
-  }
 }
 
 /* ----------------------------------------------------------------------
@@ -325,15 +291,15 @@ void FixDustDetach::collide(int i)
 {
   if (checks.holds(atom->mask[i])) return;
   const Dust::Motion motion = motion_of(i);
-  if (state[i] == AT_REST && !functions->may_move(motion)) return;
-  if (state[i] == FREE_FLIGHT) began[i] = steps;
-  if (state[i] < 0) begin_collision(i, motion);
-  Dust::Collision &collision = collisions[state[i]];
-  if (collision.step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work)) {
+  if (carriers.state[i] == AT_REST && !coat.table->may_move(motion)) return;
+  if (carriers.state[i] == FREE_FLIGHT) carriers.began[i] = steps;
+  if (carriers.state[i] < 0) begin_collision(i, motion);
+  Dust::Collision &collision = collisions[carriers.state[i]];
+  if (collision.step(*coat.table, motion, settings.stiffen_time * update->dt, carriers.attached[i], collisions.work)) {
     checks.grains_left(i, motion.acceleration, course_of(collision));
     record(i);
   }
-  checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), functions->min_hold());
+  checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), coat.table->min_hold());
   const bool grows = !collision.weak() || settings.criteria.tangential == Dust::Criteria::INTEGRATE;
   if (grows) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
@@ -341,18 +307,16 @@ void FixDustDetach::collide(int i)
 
 DeckChecks::Course FixDustDetach::course_of(const Dust::Collision &collision) const
 {
-  return {collision.impulse(), collision.peak_acceleration(), functions->min_hold()};
+  return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold()};
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
-  checks.check_size(i, carrier_radius);
-  state[i] = collisions.take();
-  Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
-  if (settings.rotation) now.turn_by(angle[i], 1.0);
-  collisions[state[i]].begin(now, motion.spin);
+  checks.check_size(i, coat.radius);
+  carriers.state[i] = collisions.take();
+  collisions[carriers.state[i]].begin(carriers.standing(i), motion.spin);
   make_exchange_room(i);
 }
 
@@ -360,24 +324,24 @@ void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 
 void FixDustDetach::finish_collision(int i, int next)
 {
-  Dust::Collision &collision = collisions[state[i]];
+  Dust::Collision &collision = collisions[carriers.state[i]];
   const Dust::Motion motion = motion_of(i);
-  if (collision.end(*functions, motion.spin, attached[i], collisions.work)) record(i);
+  if (collision.end(*coat.table, motion.spin, carriers.attached[i], collisions.work)) record(i);
   array_atom[i][DetachAtom::PEAK_ACCELERATION] = collision.peak_acceleration();
-  checks.collision_over(i, next == FREE_FLIGHT ? steps - began[i] : 0.0, course_of(collision));
+  checks.collision_over(i, next == FREE_FLIGHT ? steps - carriers.began[i] : 0.0, course_of(collision));
   mine.collisions += 1.0;
-  mine.north += collision.lost_north(*functions, attached[i]);
-  mine.sliding += collision.grains_that(Dust::SLIDING, *functions, attached[i]);
-  mine.rolling += collision.grains_that(Dust::ROLLING, *functions, attached[i]);
-  collisions.give_back(state[i]);
-  state[i] = next;
+  mine.north += collision.lost_north(*coat.table, carriers.attached[i]);
+  mine.sliding += collision.grains_that(Dust::SLIDING, *coat.table, carriers.attached[i]);
+  mine.rolling += collision.grains_that(Dust::ROLLING, *coat.table, carriers.attached[i]);
+  collisions.give_back(carriers.state[i]);
+  carriers.state[i] = next;
   if (next == FREE_FLIGHT) leave_contact(i);
 }
 
 void FixDustDetach::leave_contact(int i)
 {
-  state[i] = FREE_FLIGHT;
-  array_atom[i][DetachAtom::CONTACT_TIME] = (steps - began[i]) * settings.stiffen_time * update->dt;
+  carriers.state[i] = FREE_FLIGHT;
+  array_atom[i][DetachAtom::CONTACT_TIME] = (steps - carriers.began[i]) * settings.stiffen_time * update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -387,25 +351,13 @@ void FixDustDetach::leave_contact(int i)
 void FixDustDetach::spin_off(int i)
 {
   const Dust::Motion motion = motion_of(i);
-  if (!functions->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
+  if (!coat.table->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
   begin_collision(i, motion);
-  if (collisions[state[i]].step(*functions, motion, settings.stiffen_time * update->dt, attached[i], collisions.work))
+  if (collisions[carriers.state[i]].step(*coat.table, motion, settings.stiffen_time * update->dt, carriers.attached[i],
+                                         collisions.work))
     record(i);
-  collisions.give_back(state[i]);
-  state[i] = FREE_FLIGHT;
-}
-
-/* ----------------------------------------------------------------------
-   collisions whose carriers have left this rank or were deleted
-------------------------------------------------------------------------- */
-
-void FixDustDetach::drop_lost_collisions()
-{
-  if (!collisions.any_taken()) return;
-  std::vector<bool> taken(collisions.capacity(), false);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (state[i] >= 0) taken[state[i]] = true;
-  collisions.keep_only(taken);
+  collisions.give_back(carriers.state[i]);
+  carriers.state[i] = FREE_FLIGHT;
 }
 
 /* ----------------------------------------------------------------------
@@ -421,18 +373,18 @@ void FixDustDetach::record(int i)
   double lost = 0.0, lost_mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
   for (const Dust::Detachment &d : collisions.work.detached) {
     mine.modes[d.mode] += 1.0;
-    lost += functions->weight(d.bit);
+    lost += coat.table->weight(d.bit);
     if (!collisions.work.locate) continue;
-    const int number = functions->grain(d.bit);
-    const Dust::Grain &grain = texture.grains[number];
-    const double distance = carrier_radius + grain.radius, *n = d.direction, *w = d.velocity;
+    const int number = coat.table->grain(d.bit);
+    const Dust::Grain &grain = coat.texture.grains[number];
+    const double distance = coat.radius + grain.radius, *n = d.direction, *w = d.velocity;
     const double place[3] = {x[0] + distance * n[0], x[1] + distance * n[1], x[2] + distance * n[2]};
     const double speed[3] = {velocity[0] + w[0], velocity[1] + w[1], velocity[2] + w[2]};
     if (settings.keep_rows)
       rows.add({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
                 place[0], place[1], place[2], speed[0], speed[1], speed[2]});
     if (!settings.lose_mass) continue;
-    const double mass = functions->weight(d.bit) * functions->mean_mass();
+    const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
     lost_mass += mass;
     for (int k = 0; k < 3; k++) momentum[k] += mass * speed[k];
     if (settings.emit)
@@ -447,8 +399,8 @@ void FixDustDetach::record(int i)
   if (settings.lose_mass) shedding.take_off(i, lost_mass, momentum);
   mine.weight += lost;
   array_atom[i][DetachAtom::ATTACHED] -= double(collisions.work.detached.size());
-  array_atom[i][DetachAtom::MASS] += lost * functions->mean_mass();
-  window_mass[i] += lost * functions->mean_mass();
+  array_atom[i][DetachAtom::MASS] += lost * coat.table->mean_mass();
+  carriers.window_mass[i] += lost * coat.table->mean_mass();
   collisions.work.detached.clear();
   rows.open();
 }
@@ -457,10 +409,7 @@ void FixDustDetach::record(int i)
 
 void FixDustDetach::close_window()
 {
-  for (int i = 0; i < atom->nlocal; i++) {
-    array_atom[i][DetachAtom::WINDOW_MASS] = window_mass[i];
-    window_mass[i] = 0.0;
-  }
+  carriers.close_window();
   rows.close();
   show_rows();
 }
@@ -479,7 +428,7 @@ template <typename Question> double FixDustDetach::sum_under_way(Question questi
 {
   double sum = 0.0;
   for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && state[i] >= 0) sum += question(collisions[state[i]], i);
+    if ((atom->mask[i] & groupbit) && carriers.state[i] >= 0) sum += question(collisions[carriers.state[i]], i);
   MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   return sum;
 }
@@ -498,9 +447,10 @@ double FixDustDetach::compute_vector(int n)
 {
   using namespace DetachVector;
   const DetachTotals t = mine.sum(world);
-  const double grain_mass = functions ? functions->mean_mass() : 0.0;
+  const double grain_mass = coat ? coat.table->mean_mass() : 0.0;
   const auto met = [this](Dust::Mode mode) {
-    return sum_under_way([=](const Dust::Collision &c, int i) { return c.grains_that(mode, *functions, attached[i]); });
+    return sum_under_way(
+        [=](const Dust::Collision &c, int i) { return c.grains_that(mode, *coat.table, carriers.attached[i]); });
   };
   switch (n) {
     case INITIAL_GRAINS: return t.initial;
@@ -510,7 +460,7 @@ double FixDustDetach::compute_vector(int n)
     case SOUTH: return t.detached() - compute_vector(NORTH);
     case NORTH:
       return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
-               return c.lost_north(*functions, attached[i]);    // with the velocity so far
+               return c.lost_north(*coat.table, carriers.attached[i]);    // with the velocity so far
              });
     case DETACHED_MASS: return t.weight * grain_mass;
     case INITIAL_MASS: return t.initial * grain_mass;
@@ -525,9 +475,7 @@ double FixDustDetach::compute_vector(int n)
 
 double FixDustDetach::attached_grains() const
 {
-  double sum = 0.0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && state[i] != NO_CARRIER) sum += array_atom[i][DetachAtom::ATTACHED];
+  double sum = carriers.attached_grains(groupbit);
   MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   return sum;
 }
@@ -536,9 +484,7 @@ double FixDustDetach::attached_grains() const
 
 double FixDustDetach::memory_usage()
 {
-  const double words = functions ? functions->words() : 0;
-  const double numbers = words + DetachAtom::SIZE + 2 + orientation_size();
-  const double bytes = double(atom->nmax) * (sizeof(int) + numbers * sizeof(double)) + collisions.memory_usage();
+  const double bytes = double(atom->nmax) * carriers.size() * sizeof(double) + collisions.memory_usage();
   return bytes + rows.memory_usage() + shedding.memory_usage();
 }
 
@@ -556,7 +502,7 @@ void FixDustDetach::setup_pre_exchange()
 
 void FixDustDetach::pre_exchange()
 {
-  if (settings.emit) mine.no_room += shedding.emit_grains([this](int i) { return state[i] < 0; });
+  if (settings.emit) mine.no_room += shedding.emit_grains([this](int i) { return carriers.state[i] < 0; });
   share_exchange_room();
 }
 
@@ -596,54 +542,28 @@ void FixDustDetach::unpack_forward_comm(int n, int first, double *buf) { std::co
 void FixDustDetach::grow_arrays(int nmax)
 {
   shedding.grow(nmax);
-  memory->grow(state, nmax, "dust/detach:state");
-  memory->grow(window_mass, nmax, "dust/detach:window_mass");
-  memory->grow(began, nmax, "dust/detach:began");
-  memory->grow(array_atom, nmax, DetachAtom::SIZE, "dust/detach:array_atom");
-  if (oriented()) memory->grow(orientation, nmax, "dust/detach:orientation");
-  if (settings.rotation) memory->grow(angle, nmax, 3, "dust/detach:angle");
-  if (functions) memory->grow(attached, nmax, functions->words(), "dust/detach:attached");
+  carriers.grow(nmax);
+  array_atom = carriers.columns;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixDustDetach::copy_arrays(int i, int j, int /*delflag*/)
 {
   shedding.copy(i, j);
-  state[j] = state[i];
-  window_mass[j] = window_mass[i];
-  began[j] = began[i];
-  std::copy_n(array_atom[i], static_cast<int>(DetachAtom::SIZE), array_atom[j]);
-  if (orientation) orientation[j] = orientation[i];
-  if (angle) std::copy_n(angle[i], 3, angle[j]);
-  if (functions) std::copy_n(attached[i], functions->words(), attached[j]);
+  carriers.copy(i, j);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixDustDetach::set_arrays(int i)
 {
   shedding.set_new(i);
-  state[i] = NO_CARRIER;
-  window_mass[i] = began[i] = 0.0;
-  if (angle) std::fill_n(angle[i], 3, 0.0);
-  std::fill_n(array_atom[i], static_cast<int>(DetachAtom::SIZE), 0.0);
+  carriers.clear(i);
   newcomers = true;
 }
 
 /* ----------------------------------------------------------------------
-   layout: words of a texture, state, columns, mass of the window, first contact, orientation and angle, bits, waiting
-   grains, collision; or 0, NEWCOMER
+   layout: words of a texture, the carrier's data, waiting grains, collision; or 0, NEWCOMER
 ------------------------------------------------------------------------- */
 
-int FixDustDetach::fixed_size() const
-{
-  return 2 + DetachAtom::SIZE + 2 + 1 + orientation_size() + (functions ? functions->words() : 0);
-}
-
-bool FixDustDetach::oriented() const { return settings.rotation || !settings.same_orientation(); }
-
-int FixDustDetach::orientation_size() const { return settings.rotation ? 7 : oriented() ? 4 : 0; }
+int FixDustDetach::fixed_size() const { return 2 + carriers.size(); }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
 void FixDustDetach::make_exchange_room(int i)
@@ -670,21 +590,14 @@ int FixDustDetach::packed_size(int i) const
 
 void FixDustDetach::pack(int i, bool for_file, Dust::Packer &to) const
 {
-  if (state[i] == NO_CARRIER) {
+  if (carriers.state[i] == NO_CARRIER) {
     to.put(shedding.is_new(i) ? NEWCOMER : 0.0);
     return;
   }
-  const int words = functions->words();
-  to.put(words);
-  to.put(state[i] >= 0 ? 0 : state[i]);
-  to.put(array_atom[i], DetachAtom::SIZE);
-  to.put(window_mass[i]);
-  to.put(began[i]);
-  if (orientation) to.put(&orientation[i], 1);
-  if (angle) to.put(angle[i], 3);
-  to.put(attached[i], words);
+  to.put(coat.table->words());
+  carriers.pack(i, to);
   shedding.pack(i, for_file, to);
-  if (state[i] >= 0) collisions[state[i]].pack(to);
+  if (carriers.state[i] >= 0) collisions[carriers.state[i]].pack(to);
 }
 
 void FixDustDetach::unpack(int i, const double *buf)
@@ -694,20 +607,14 @@ void FixDustDetach::unpack(int i, const double *buf)
   const int words = static_cast<int>(from.number());
   if (words != NEWCOMER) shedding.set_seen(i);
   if (words <= 0) return;
-  if (!functions || words != functions->words())
+  if (!coat || words != coat.table->words())
     error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
-  state[i] = static_cast<int>(from.number());
-  from.get(array_atom[i], DetachAtom::SIZE);
-  window_mass[i] = from.number();
-  began[i] = from.number();
+  carriers.unpack(i, from);
   rows.open();
-  if (orientation) from.get(&orientation[i], 1);
-  if (angle) from.get(angle[i], 3);
-  from.get(attached[i], words);
   shedding.unpack(i, from);
-  if (state[i] == 0) {
-    state[i] = collisions.take();
-    collisions[state[i]].unpack(from);
+  if (carriers.state[i] == 0) {
+    carriers.state[i] = collisions.take();
+    collisions[carriers.state[i]].unpack(from);
   }
   make_exchange_room(i);
 }
@@ -716,21 +623,17 @@ void FixDustDetach::unpack(int i, const double *buf)
    LAMMPS wants the size first
 ------------------------------------------------------------------------- */
 
-int FixDustDetach::pack_exchange(int i, double *buf)
+int FixDustDetach::pack_with_size(int i, bool for_file, double *buf) const
 {
   Dust::Packer to(buf + 1);
-  pack(i, false, to);
+  pack(i, for_file, to);
   buf[0] = to.size() + 1;
   return to.size() + 1;
 }
 
-int FixDustDetach::pack_restart(int i, double *buf)
-{
-  Dust::Packer to(buf + 1);
-  pack(i, true, to);
-  buf[0] = to.size() + 1;
-  return to.size() + 1;
-}
+int FixDustDetach::pack_exchange(int i, double *buf) { return pack_with_size(i, false, buf); }
+
+int FixDustDetach::pack_restart(int i, double *buf) { return pack_with_size(i, true, buf); }
 
 int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 {
@@ -744,22 +647,11 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  std::vector<double> list = {texture_checksum, double(orientation_size()), double(settings.lose_mass), steps};
+  std::vector<double> list = {coat.checksum, double(carriers.orientation_size()), double(settings.lose_mass), steps};
   for (double number : shedding.numbers()) list.push_back(number);
   for (double number : mine.sum(world).numbers()) list.push_back(number);
-  // LAMMPS counts the bytes of a fix's restart data as int
-  constexpr double MOST = 2.0e9;
-  double bytes = double(rows.present().size() + rows.last().size()) * sizeof(DetachmentRows::Row);
-  MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_SUM, world);
-  const bool fits = bytes < MOST;
-  if (!fits && comm->me == 0)
-    error->warning(FLERR, "Fix dust/detach {} leaves its {} local rows out of the restart file: too many", id,
-                   bytes / sizeof(DetachmentRows::Row));
-  for (const auto *window : {&rows.present(), &rows.last()}) {
-    const auto all = fits ? dust_gather(*window, 0, world) : std::vector<DetachmentRows::Row>();
-    list.push_back(double(all.size()));
-    for (const auto &row : all) list.insert(list.end(), row.begin(), row.end());
-  }
+  if (!rows.save(list, world) && comm->me == 0)
+    error->warning(FLERR, "Fix dust/detach {} leaves its local rows out of the restart file: too many", id);
   if (comm->me == 0) {
     const int size = static_cast<int>(list.size() * sizeof(double));
     fwrite(&size, sizeof(int), 1, fp);
@@ -770,30 +662,20 @@ void FixDustDetach::write_restart(FILE *fp)
 void FixDustDetach::restart(char *buf)
 {
   const auto *p = reinterpret_cast<const double *>(buf);
-  const double checksum = *p++;
-  if (checksum != 0.0 && functions && std::fabs(checksum - texture_checksum) > 1.0e-9 * (1.0 + std::fabs(checksum)))
+  const double checksum = *p++, orientation_size = *p++, lost_mass = *p++;
+  if (checksum != 0.0 && coat && !coat.is_that_of(checksum))
     error->all(FLERR, "Fix dust/detach texture is not the one of the restart file");
-  if (checksum != 0.0 && *p != orientation_size())
+  if (checksum != 0.0 && orientation_size != carriers.orientation_size())
     error->all(FLERR, "Fix dust/detach rotation or orientation is not that of the restart file");
-  p++;
-  if (checksum != 0.0 && *p != double(settings.lose_mass))
-    error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}", *p != 0.0 ? "yes" : "no");
-  p++;
+  if (checksum != 0.0 && lost_mass != double(settings.lose_mass))
+    error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}",
+               lost_mass != 0.0 ? "yes" : "no");
   steps = *p++;
   shedding.set(p);
   p += DustShedding::SIZE;
-  mine = DetachTotals{};
-  std::vector<DetachmentRows::Row> present, last;
-  if (comm->me == 0) {
-    mine = DetachTotals::from(p);
-    p += DetachTotals::SIZE;
-    for (auto *window : {&present, &last}) {
-      window->resize(static_cast<size_t>(*p++));
-      std::memcpy(window->data(), p, window->size() * sizeof(DetachmentRows::Row));
-      p += window->size() * DetachRow::SIZE;
-    }
-  }
-  rows.set(std::move(present), std::move(last));
+  mine = comm->me == 0 ? DetachTotals::from(p) : DetachTotals{};
+  p += DetachTotals::SIZE;
+  rows.restore(p, comm->me == 0);
   show_rows();
   newcomers = true;
 }

@@ -13,12 +13,14 @@ FixStyle(dust/detach,FixDustDetach);
 
 #include "fix.h"
 
+#include "carrier_data.h"
 #include "core/collision_pool.h"
 #include "core/pack.h"
 #include "deck_checks.h"
 #include "detach_settings.h"
 #include "detach_totals.h"
 #include "detachment_rows.h"
+#include "dust_coat.h"
 #include "dust_shedding.h"
 
 #include <memory>
@@ -65,32 +67,20 @@ class FixDustDetach : public Fix {
   DeckChecks checks;
   DeckChecks::Course course_of(const Dust::Collision &) const;
 
-  // texture, once the size of the carriers is known
-  double carrier_radius;    // 0 until then
-  Dust::Texture texture;
-  std::unique_ptr<Dust::GrainTable> functions;
-  double texture_checksum;
+  DustCoat coat;
   void build();
 
-  // per atom
-  enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: index of the collision
-  int *state;
-  uint64_t **attached;
-  Dust::Quaternion *orientation;    // if it is not the same for all carriers for ever: TURN_EVERY steps ago at most,
-  double **angle;                   // with rotation: about which the carrier has turned since
-  double *window_mass;              // lost in the window that is not complete yet
-  double steps;                     // since the fix is there
-  double *began;                    // of them, when the present contact did
-  bool newcomers;                   // atoms were added that may be carriers
+  CarrierData carriers;
+  static constexpr int NO_CARRIER = CarrierData::NO_CARRIER, FREE_FLIGHT = CarrierData::FREE_FLIGHT,
+                       AT_REST = CarrierData::AT_REST;
+  double steps;      // since the fix is there
+  bool newcomers;    // atoms were added that may be carriers
   void adopt();
   void weigh();
 
   // collisions under way on this rank
   Dust::CollisionPool collisions;
-  void drop_lost_collisions();
   Dust::Motion motion_of(int) const;
-  static constexpr int TURN_EVERY = 16;
-  void turn();
   void collide(int);
   void begin_collision(int, const Dust::Motion &);
   void finish_collision(int, int);
@@ -115,11 +105,10 @@ class FixDustDetach : public Fix {
   void make_exchange_room(int);
   void share_exchange_room();
   int fixed_size() const;
-  bool oriented() const;
-  int orientation_size() const;
   int packed_size(int) const;
   static constexpr int NEWCOMER = -1;    // in what an atom that is no carrier takes along
   void pack(int, bool, Dust::Packer &) const;
+  int pack_with_size(int, bool, double *) const;
   void unpack(int, const double *);
 };
 

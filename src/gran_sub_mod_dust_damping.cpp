@@ -19,8 +19,8 @@ using namespace Granular_NS;
 
 /* ---------------------------------------------------------------------- */
 
-GranSubModDampingCoeffRestitutionLimited::GranSubModDampingCoeffRestitutionLimited(GranularModel *gm, LAMMPS *lmp) :
-    GranSubModDamping(gm, lmp)
+GranSubModDampingCoeffRestitutionLimited::GranSubModDampingCoeffRestitutionLimited(GranularModel *_gm, LAMMPS *_lmp) :
+    GranSubModDamping(_gm, _lmp)
 {
   allow_cohesion = 0;
 }

@@ -30,14 +30,15 @@ static constexpr double CUTOFF = 10.0;    // of the attraction, in z0: a hundred
 
 /* ---------------------------------------------------------------------- */
 
-GranSubModNormalJKRVdW::GranSubModNormalJKRVdW(GranularModel *gm, LAMMPS *lmp) :
-    GranSubModNormal(gm, lmp), mixed_modulus(0.0), last_Reff(-1.0), warned(false), neck(false), laid_out(-1)
+GranSubModNormalJKRVdW::GranSubModNormalJKRVdW(GranularModel *_gm, LAMMPS *_lmp) :
+    GranSubModNormal(_gm, _lmp), mixed_modulus(0.0), last_Reff(-1.0), warned(false), neck(false), laid_out(-1)
 {
   num_coeffs = 5;
   material_properties = cohesive_flag = beyond_contact = contact_radius_flag = 1;
 }
 
-GranSubModNormalJKRVdWCut::GranSubModNormalJKRVdWCut(GranularModel *gm, LAMMPS *lmp) : GranSubModNormalJKRVdW(gm, lmp)
+GranSubModNormalJKRVdWCut::GranSubModNormalJKRVdWCut(GranularModel *_gm, LAMMPS *_lmp) :
+    GranSubModNormalJKRVdW(_gm, _lmp)
 {
   num_coeffs = 6;
 }

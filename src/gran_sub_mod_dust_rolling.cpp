@@ -35,8 +35,8 @@ template <typename Model> static void allow_synchronized_verlet(Model *, long) {
    it is kept times the sign of the neck, which is negated with it, and in the normal model's place.
 ------------------------------------------------------------------------- */
 
-GranSubModRollingDominikTielens::GranSubModRollingDominikTielens(GranularModel *gm, LAMMPS *lmp) :
-    GranSubModRolling(gm, lmp), normal(nullptr)
+GranSubModRollingDominikTielens::GranSubModRollingDominikTielens(GranularModel *_gm, LAMMPS *_lmp) :
+    GranSubModRolling(_gm, _lmp), normal(nullptr)
 {
   num_coeffs = 1;
   contact_radius_flag = 1;

@@ -123,7 +123,10 @@ def test_a_resolved_impact(command, tmp_path):
         (("--coverage", "-1"), "--coverage: -1 is out of range"),
         (("--coverage", "0.7"), "--coverage: 0.7 is out of range"),
         (("--bare", "4"), "--bare: 4 is out of range"),
-        (("--grain-diameter", "0.002"), "--grain-diameter: 0.002 is out of range; allowed: above 0 and below 0.0015 m"),
+        (
+            ("--grain-diameter", "0.002"),
+            "--grain-diameter: 0.002 is out of range; allowed: above 0 and below 0.00075 m",
+        ),
         (("--carrier-diameter", "-1"), "--carrier-diameter: -1 is out of range"),
         (("--hamaker", "0"), "--hamaker: 0 is out of range"),
         (("--z0", "0"), "--z0: 0 is out of range"),

@@ -2,14 +2,19 @@
 
 import errno
 import os
+import signal
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
 import pytest
 
-from dustdetach import DustError, InvalidInput
+from dustdetach import DustError, InvalidInput, read_cases, read_csv
 from dustdetach.errors import MachineFault
 from dustdetach.files import as_path, check_room, make_folder, read_text, replace_file, scratch_folder
+from dustdetach.frames import frame_sizes
+from dustdetach.texture import read_texture
 
 
 def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
@@ -74,6 +79,26 @@ def test_what_cannot_be_replaced_is_named(tmp_path, name):
     assert sorted(tmp_path.iterdir()) == before
 
 
+def test_what_a_killed_process_has_left_is_removed_by_the_next(tmp_path):
+    leave = (
+        "import os, signal, sys; from pathlib import Path; from dustdetach.files import replace_file\n"
+        "with replace_file(Path(sys.argv[1])) as part:\n"
+        "    part.write_text('half'); os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    path = tmp_path / "file"
+    killed = subprocess.run([sys.executable, "-c", leave, path])
+    assert killed.returncode == -signal.SIGKILL
+    assert len(list(tmp_path.iterdir())) == 1
+    others = [tmp_path / name for name in (".dust.elsewhere.999999.0.part", ".dust.", ".dust.notes")]
+    with replace_file(tmp_path / "at work") as mine:
+        mine.write_text("not yet")
+        for other in others:
+            other.write_text("not ours to remove")
+        with replace_file(path) as part:
+            part.write_text("all of it")
+        assert sorted(tmp_path.iterdir()) == sorted([path, mine, *others])
+
+
 def test_two_threads_may_write_one_file(tmp_path):
     path = tmp_path / "file"
     both = threading.Barrier(2)
@@ -101,6 +126,13 @@ def test_what_is_no_text_is_named(tmp_path, content, words):
         read_text(tmp_path / "file")
     assert str(refusal.value).startswith(f"{tmp_path / 'file'}: ")
     assert words in str(refusal.value)
+
+
+@pytest.mark.parametrize("read", [read_text, read_texture, frame_sizes, read_csv, read_cases])
+@pytest.mark.parametrize("device", ["/dev/zero", "/dev/null", "/dev/full"])
+def test_a_device_may_have_no_end(read, device):
+    with pytest.raises(InvalidInput, match=f"{device}: is a device"):
+        read(Path(device))
 
 
 def test_a_byte_order_mark_is_no_part_of_a_text(tmp_path):

@@ -64,11 +64,15 @@ def test_mappings_that_are_none(values):
         ("coverage", 0.7, "at most 0.54"),
         ("bare", -0.1, "0 to below 3.14159265 rad"),
         ("bare", 3.2, "0 to below 3.14159265 rad"),
-        ("grain_diameter", 1.5e-3, "above 0 and below 0.0015 m"),
+        ("grain_diameter", 0.75e-3, "above 0 and below 0.00075 m, the carrier's radius"),
         ("grain_diameter", 1e-9, "grains; allowed: "),
         ("carrier_diameter", 0, "above 0 and at most 1 m"),
-        ("hamaker", 0, "above 0"),
-        ("z0", 0, "above 0"),
+        ("hamaker", 0, "1e-22 to 1e-17 J"),
+        ("hamaker", 1.0001e-17, "1e-22 to 1e-17 J"),
+        ("z0", 0, "1e-11 to 1e-07 m"),
+        ("z0", 1e-6, "1e-11 to 1e-07 m"),
+        # 14.633e-20/(18 pi 10) = 1.609e-11 squared
+        ("z0", 1.5e-11, "1.61e-11 to 1e-07 m for this Hamaker constant"),
         ("friction", -0.1, "0 to 10"),
         ("wall_friction", -0.1, "0 to 10"),
         ("grain_damping", -1, "0 to 100"),
@@ -114,6 +118,18 @@ def test_a_grain_oscillates_in_a_quarter_of_a_microsecond():
     # 2 pi sqrt(m_d/k_0) with m_d 1.1310e-11 kg, E* 6.073e10 Pa and a_0 90.18 nm
     expected = 2 * math.pi * math.sqrt(1.1310e-11 / (1.2 * 6.073e10 * 90.18e-9))
     assert Impact(speed=4).grain_period == pytest.approx(expected, rel=1e-3)
+
+
+def test_grains_that_gravity_would_lift_off():
+    # 3 pi gamma R_12/m_d with gamma 0.016173 J/m2, 2700 kg/m3
+    def held(grain, carrier):
+        return 3 * math.pi * 0.016173 / (2 / grain + 2 / carrier) / (math.pi / 6 * grain**3 * 2700)
+
+    assert held(2e-3, 0.02) > 9.81 > held(2.4e-3, 0.02)
+    parameters = {"speed": 8.0, "carrier_diameter": 0.02, "timestep": 1e-8}
+    Impact(grain_diameter=2e-3, **parameters)
+    with pytest.raises(InvalidInput, match=r"--grain-diameter: 0\.0024 m .* at least 9\.81"):
+        Impact(grain_diameter=2.4e-3, **parameters)
 
 
 def test_damping_and_time_step_are_bound_together():

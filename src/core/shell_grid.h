@@ -22,8 +22,8 @@ inline double chord2(const double *a, const double *b)
 }
 
 /*! Which of the points on a unit sphere put in so far are near another one: bands of polar angle, each cut into equal
- *  bins of azimuth. Bins are as wide as the reach of the points, but no narrower than makes sense for their number: memory
- *  goes with that, however small the reach. */
+ *  bins of azimuth. Bins are as wide as the reach of the points, but no narrower than makes sense for their number:
+ *  memory goes with that, however small the reach. */
 class ShellGrid {
  public:
   //! reach = largest angle (rad) at which two points are neighbours; number = of all points to come, roughly
@@ -47,7 +47,7 @@ class ShellGrid {
     head = static_cast<int>(points.size()) - 1;
   }
 
-  //! calls visit(id) for all points within an angle (rad), and some beyond, until it returns true; returns whether one did
+  //! calls visit(id) for all points within an angle (rad), and some beyond, until one is true; returns whether one was
   template <typename Visit> bool any_near(const double *n, double angle, Visit visit) const
   {
     const double theta = std::acos(std::clamp(n[2], -1.0, 1.0));

@@ -24,8 +24,8 @@ typedef struct DustTexture DustTexture;
 /*! Reads a texture file and checks it against all rules of its format.
  *
  *  \param path     of the file, in the bytes of the file system
- *  \param message  what is wrong: one line of printable ASCII without the name of the file, which begins with "line N: " if it
- *                  is about the contents; cut to size and ended with a 0; "" if nothing is wrong
+ *  \param message  what is wrong: one line of printable ASCII without the name of the file. It begins with "line N: " if
+ *                  it is about the contents. Cut to size and ended with a 0; "" if nothing is wrong
  *  \param size     of message, in bytes
  *  \return         the texture, to be given to dust_texture_free(), or a null pointer if something is wrong */
 DUST_EXPORT DustTexture *dust_texture_read(const char *path, char *message, int size);
@@ -42,7 +42,7 @@ DUST_EXPORT void dust_texture_bare(const DustTexture *, double *half_angle, doub
 /*! Number of grains */
 DUST_EXPORT long long dust_texture_grains(const DustTexture *);
 
-/*! For each grain, in the order of the file: nx, ny, nz (unit vector from the carrier's centre to its own) and diameter (length)
+/*! For each grain, in the order of the file: nx, ny, nz (unit vector from the carrier's centre to its own), diameter
  *
  *  \param table  room for 4 dust_texture_grains() numbers */
 DUST_EXPORT void dust_texture_table(const DustTexture *, double *table);

@@ -139,7 +139,7 @@ void sync_folder_of(const std::string &path)
 }    // namespace
 
 /* ----------------------------------------------------------------------
-   under another name beside it, to be renamed when it is complete and on the disk; devices and pipes have nothing to lose
+   under another name beside it, to be renamed when it is complete and on the disk; devices have nothing to lose
 ------------------------------------------------------------------------- */
 
 void Dust::write_texture_file(const Texture &texture, const std::string &path)

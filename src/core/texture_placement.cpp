@@ -213,8 +213,8 @@ double room(double carrier_radius, double grain_radius, const BareCap &bare)
   return ratio * ratio * 0.5 * (1.0 + std::cos(bare.half_angle));
 }
 
-// most = what can be placed on average. Chance and the rim of the cap add to the number of grains that find room, by twice
-// its root at most.
+// most = what can be placed on average. Chance and the rim of the cap add to the number of grains that find room, by
+// twice its root at most.
 void check_room(double coverage, double most, double grains)
 {
   const double fit = grains * most / coverage;

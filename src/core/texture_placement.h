@@ -11,8 +11,8 @@
 
 namespace Dust {
 
-/*! Sizes of grains by volume, as sieves and laser diffraction give them. Both kinds are cut at the volume fractions 0.01
- *  and 0.99, since by number their densities, q0 ~ q3/x^3, grow or even diverge towards fine grains. */
+/*! Sizes of grains by volume, as sieves and laser diffraction give them. Both kinds are cut at the volume fractions
+ *  0.01 and 0.99, since by number their densities, q0 ~ q3/x^3, grow or even diverge towards fine grains. */
 struct SizeDistribution {
   enum Kind {
     LOGNORMAL,    //!< spread = geometric standard deviation, above 1
@@ -37,14 +37,14 @@ double grains_for_coverage(double coverage, double carrier_radius, double grain_
  *
  * \param coverage  X0, positive; the bare cap counts as surface
  * \param seed      the same seed gives the same texture, to the round-off of the C library's functions
- * \throw TextureError  wrong arguments, more than MOST_GRAINS, or coverage too high to be placed: near 0.547 of the shell of
- *                      the centres outside the cap the placement jams; well above that it is not even tried */
+ * \throw TextureError  wrong arguments, more than MOST_GRAINS, or coverage too high to be placed: near 0.547 of the
+ *                      shell of the centres outside the cap the placement jams; well above that it is not even tried */
 Texture place_monolayer(double carrier_radius, double grain_radius, double coverage, const BareCap &bare,
                         uint64_t seed);
 
-/*! Monolayer of grains drawn from a distribution until their summed cross-section reaches the coverage, which the last one
- *  exceeds by a part of its own; placed from large to small. No gap between two grains is below 0.001 of the sum of their
- *  radii. */
+/*! Monolayer of grains drawn from a distribution until their summed cross-section reaches the coverage, which the last
+ *  one exceeds by a part of its own; placed from large to small. No gap between two grains is below 0.001 of the sum of
+ *  their radii. */
 Texture place_monolayer(double carrier_radius, const SizeDistribution &sizes, double coverage, const BareCap &bare,
                         uint64_t seed);
 

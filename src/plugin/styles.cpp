@@ -50,7 +50,9 @@ const char *remember(const std::string &text)
 
 class Registry {
  public:
-  Registry(LAMMPS *lmp, void *handle, lammpsplugin_regfunc regfunc) : lmp(lmp), handle(handle), regfunc(regfunc) {}
+  Registry(LAMMPS *_lmp, void *_handle, lammpsplugin_regfunc _regfunc) : lmp(_lmp), handle(_handle), regfunc(_regfunc)
+  {
+  }
 
   // styles made from the LAMMPS instance alone: pair, command
   template <class Creator>

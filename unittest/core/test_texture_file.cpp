@@ -187,7 +187,7 @@ TEST(TextureFile, ComplaintsAreOneShortLineWhateverTheFileHolds)
   }
 }
 
-// a file of three grains in which one thing is odd, judged by the rules of doc/texture.rst, here with all pairs compared
+// files of three grains in which one thing is odd, judged by the rules of doc/texture.rst, with all pairs compared
 TEST(TextureFile, OddFilesAreJudgedByTheRules)
 {
   std::mt19937 random(5);

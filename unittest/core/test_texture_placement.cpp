@@ -1,4 +1,4 @@
-// Placement of grains: exact coverage, no overlap, bare cap, uniform, reproducible; what cannot be placed is refused at once.
+// Placement of grains: exact coverage, no overlap, bare cap, uniform, reproducible; what cannot be is refused at once.
 
 #include "texture_placement.h"
 
@@ -71,8 +71,8 @@ TEST(TexturePlacement, ReferenceMonolayer)
 
 TEST(TexturePlacement, GrainsAreUniformOutsideTheBareCap)
 {
-  // counts in ten bands of equal area, and in ten of azimuth, summed over seeds: chi squared with 9 degrees of freedom is
-  // above 27.9 once in a thousand; grains that exclude each other scatter less than independent ones
+  // counts in ten bands of equal area, and in ten of azimuth, summed over seeds: chi squared with 9 degrees of freedom
+  // is above 27.9 once in a thousand; grains that exclude each other scatter less than independent ones
   double band[10] = {}, sector[10] = {};
   const double low = -std::cos(0.33);
   int n = 0;
@@ -119,8 +119,8 @@ TEST(TexturePlacement, DenseMonolayersUpToJamming)
   EXPECT_EQ(t.grains.size(), 11250u);
   EXPECT_GE(least_gap(t), 0.999e-3 * 2.0 * RD);
 
-  // random sequential placement of discs jams at 0.5470; here on the shell of the centres, outside the cap, with the gap;
-  // the sphere's curvature and chance leave a few thousandths
+  // random sequential placement of discs jams at 0.5470; here on the shell of the centres, outside the cap, with the
+  // gap; the sphere's curvature and chance leave a few thousandths
   const double shell = 0.5470 * std::pow((RP + RD) / RP, 2) * (1.0 - 0.5 * (1.0 - std::cos(0.33))) / std::pow(1.001, 2);
   const std::string error = placing_error(RP, RD, 0.56);
   const std::string full = "the monolayer is full at ";
@@ -181,7 +181,7 @@ TEST(TexturePlacement, DistributedSizesAreTheOnesAskedFor)
     std::sort(x.begin(), x.end());
     EXPECT_GE(x.front(), sizes.quantile(0.01));
     EXPECT_LE(x.back(), sizes.quantile(0.99));
-    // Kolmogorov's distance by volume: 1.95/sqrt(n) once in a thousand for n equal weights, and n (sum v)^2/sum v^2 of them
+    // Kolmogorov's distance by volume: 1.95/sqrt(n) once in a thousand for n equal weights; n = (sum v)^2/sum v^2 here
     double below = 0.0, worst = 0.0, squares = 0.0;
     for (const double d : x) squares += std::pow(d, 6);
     const auto wanted = [&](double d) {
@@ -297,8 +297,8 @@ TEST(TexturePlacement, WhatCannotBeIsRefusedAtOnce)    // each took minutes, or 
 
 TEST(TexturePlacement, NumbersOfGrainsAreForeseen)    // the message has what would have been placed
 {
-  // log-normal by volume with s = ln sigma_g: means of x^-3 and x^-1 give x50^2 exp(-4 s^2) as the mean of x^2 by number,
-  // but for the cuts
+  // log-normal by volume with s = ln sigma_g: means of x^-3 and x^-1 give x50^2 exp(-4 s^2) as the mean of x^2 by
+  // number, but for the cuts
   const double s = std::log(1.05), x = 1e-9, coverage = 0.2;
   std::string error;
   try {

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 BUILD = Path(os.environ.get("DUST_BUILD_DIR", Path(__file__).parents[2] / "build"))
-AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def mpirun(folder: Path, deck: str, ranks: int, **variables: str) -> str:
@@ -17,7 +16,7 @@ def mpirun(folder: Path, deck: str, ranks: int, **variables: str) -> str:
     command += ["-in", str(Path(__file__).with_name(deck))]
     for name, value in variables.items():
         command += ["-var", name, value]
-    done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     return done.stdout
 
@@ -33,7 +32,8 @@ def run(folder: Path, ranks: int, **variables: str) -> tuple[str, str, list[str]
     """Final state of the carriers, thermo output and events (sorted) of the deck on so many ranks."""
     said = mpirun(folder, "in.ranks", ranks, **variables)
     events = (folder / "ranks.txt.events").read_text().splitlines()
-    return (folder / "ranks.txt").read_text(), thermo(said), sorted(line for line in events if re.match(r"\d+ \d+ \d+ \d", line))
+    rows = sorted(line for line in events if re.match(r"\d+ \d+ \d+ \d", line))
+    return (folder / "ranks.txt").read_text(), thermo(said), rows
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def one_rank(tmp_path_factory):
 
 def test_carriers_change_ranks_in_contact(one_rank):
     """What makes the other tests worth something: carriers cross x = 0.01 while they touch the wall."""
-    state, thermo, events = one_rank
+    state, _, events = one_rank
     rows = [line.split() for line in state.splitlines()[9:]]
     assert len(rows) == 8
     assert all(float(row[3]) * float(row[9]) > 25e-6 for row in rows)    # farther along the wall than to the border
@@ -67,7 +67,7 @@ def one_rank_restarted(tmp_path_factory):
 
 
 def test_restart_in_contact_ends_as_the_whole_run(one_rank, one_rank_restarted):
-    """The same grains; the trajectory itself changes by 1e-10, as LAMMPS recomputes damping forces with other velocities."""
+    """The same grains; the trajectory changes by 1e-10, as LAMMPS recomputes damping forces with other velocities."""
     assert one_rank_restarted[1].splitlines()[-1] == one_rank[1].splitlines()[-1]
 
 
@@ -107,9 +107,9 @@ def swap(folder: Path, ranks: int = 1, **variables: str) -> list[list[float]]:
 
 
 def assert_same_motion(rows: list[list[float]], expected: list[list[float]]):
-    """To the round-off of positions, 1e-10 of an overlap; what the history does to the motion in this time is a percent."""
+    """To the round-off of positions, 1e-10 of an overlap; the history moves this by a percent in this time."""
     assert len(rows) == len(expected) == 8
-    for row, other in zip(rows, expected):
+    for row, other in zip(rows, expected, strict=True):
         assert row[4:7] == pytest.approx(other[4:7], abs=1e-6)
         assert row[7:] == pytest.approx(other[7:], abs=1e-2)
 
@@ -172,3 +172,13 @@ def test_a_long_collision_crosses_two_borders_at_once(tmp_path):
         found.append(thermo(mpirun(tmp_path, "in.corner", px * py, px=str(px), py=str(py))))
     assert found[1] == found[0]
     assert float(found[0].split()[-6]) > 0.5    # dispersion ratio
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_notices_are_said_once(tmp_path, ranks):
+    """Carriers of several ranks have too few steps in contacts that pull: two lines from the first rank."""
+    said = mpirun(tmp_path, "in.notices", ranks)
+    warnings = [line for line in said.splitlines() if "WARNING: Fix dust/detach" in line]
+    assert len(warnings) == 2, said
+    assert sum("pulls" in line for line in warnings) == 1
+    assert sum("too few" in line for line in warnings) == 1

@@ -5,8 +5,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from test_ranks import AS_ROOT, BUILD
 
+BUILD = Path(os.environ.get("DUST_BUILD_DIR", Path(__file__).parents[2] / "build"))
 MONOLAYER = "monolayer 20e-6 coverage 0.2 seed 1"
 
 
@@ -14,7 +14,7 @@ def said(folder: Path, ranks: int, texture: str) -> tuple[int, str]:
     """Exit status and output of the deck."""
     command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-log", "none"]
     command += ["-in", str(Path(__file__).with_name("in.words")), "-var", "texture", texture]
-    done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300, check=False)
     return done.returncode, done.stdout
 
 
@@ -24,20 +24,22 @@ def said(folder: Path, ranks: int, texture: str) -> tuple[int, str]:
         (f"{MONOLAYER} write /dev/full", "write /dev/full: it cannot be written: No space left on device"),
         ("monolayer 1e-6 coverage 3 seed 1", "texture: coverage 3 cannot be placed: it must be at most about 0.53"),
         ("file none.txt", "texture file none.txt: it cannot be read: No such file or directory"),
-        ("file empty.txt", "texture file empty.txt: line 1: a texture file starts with '# dust texture 1', not with ''"),
+        ("file empty.txt", "texture file empty.txt: line 1: a texture file starts with '# dust texture 1'"),
     ],
 )
 def test_all_ranks_stop(tmp_path, texture, message):
     (tmp_path / "empty.txt").touch()
     status, output = said(tmp_path, 2, texture)
     assert status != 0
-    assert [line for line in output.splitlines() if line.startswith("ERROR")][0].startswith(f"ERROR: Fix dust/detach {message}")
+    first = next(line for line in output.splitlines() if line.startswith("ERROR"))
+    assert first.startswith(f"ERROR: Fix dust/detach {message}")
     assert [path.name for path in tmp_path.iterdir()] == ["empty.txt"]
 
 
 def test_all_ranks_have_the_same_texture(tmp_path):
-    for ranks, texture in ((1, f"{MONOLAYER} write one.txt"), (2, f"{MONOLAYER} write two.txt"), (2, "file one.txt write again.txt")):
-        assert said(tmp_path, ranks, texture)[0] == 0
+    assert said(tmp_path, 1, f"{MONOLAYER} write one.txt")[0] == 0
+    assert said(tmp_path, 2, f"{MONOLAYER} write two.txt")[0] == 0
+    assert said(tmp_path, 2, "file one.txt write again.txt")[0] == 0
     one = (tmp_path / "one.txt").read_text()
     assert one.count("\n") == 4506
     assert (tmp_path / "two.txt").read_text() == (tmp_path / "again.txt").read_text() == one

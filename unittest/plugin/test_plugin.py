@@ -244,6 +244,28 @@ def test_plugin_list_and_no_warnings(tmp_path):
     assert "WARNING" not in result.stdout
 
 
+@pytest.mark.parametrize("style", ["granular", "hybrid granular"])
+def test_loaded_after_the_pair_style(tmp_path, style):
+    """A line when it is loaded; what it says makes the styles the plugin's."""
+    sub_style = "granular " if style.startswith("hybrid") else ""
+    coeff = f"pair_coeff * * {sub_style}hertz/material 1e7 0.7 0.3 tangential mindlin NULL 1.0 0.3 damping "
+    deck = DECK.format(wall=PLANE).replace("pair_style      granular", f"pair_style {style}")
+    deck = re.sub(r"^pair_coeff.*&\n", coeff + "&\n", deck, flags=re.MULTILINE).replace("damping &", "&")
+    early, late = deck.split("timestep ")
+    early = early.replace("coeff_restitution/limited", "tsuji")
+    load = f"plugin load {PLUGIN}\n"
+    again = f"pair_style none\npair_style {style}\n{coeff}coeff_restitution/limited\n{PLANE}\n"
+    result = run(LMP, early + load + again + "timestep " + late, tmp_path)
+    assert result.returncode == 0, result.stdout
+    warnings = [line for line in result.stdout.splitlines() if "WARNING" in line]
+    assert len(warnings) == 1
+    assert "loaded after pair_style granular, fix wall (wall/gran)" in warnings[0]
+    assert "pair_style none" in warnings[0]
+    first = run(LMP, load + deck, tmp_path)
+    assert "WARNING" not in first.stdout
+    assert thermo(result.stdout) == thermo(first.stdout)
+
+
 def test_lmp_dust_does_not_need_the_plugin(tmp_path):
     result = run(LMP_DUST, f"plugin load {PLUGIN}\nplugin list\n", tmp_path)
     assert result.returncode == 0, result.stdout

@@ -1,4 +1,4 @@
-// create_dust and compute dust/carrier: real grains at rest on their carriers, which carrier holds them and when that changed.
+// create_dust and compute dust/carrier: real grains at rest on their carriers, which holds them, and since when.
 
 #include "deck.h"
 
@@ -135,9 +135,9 @@ TEST(CreateDust, RandomOrientationLeavesNoBareCapUnlessToldTo)
   EXPECT_GT(in_cap("orientation random 5"), 30);    // of 61 on average
 }
 
-// Centrifugal force F = m omega^2 |r| sin^2 against pull-off force: equal at the equator at 13.2e3 rad/s. It comes all at once,
-// so that the undamped springs along the surface go twice as far as they must: at 9e3, F = 0.46 F_c at the equator, they
-// hold that, 2 F cot < mu (2 F_c - F) at all latitudes.
+// Centrifugal force F = m omega^2 |r| sin^2 against pull-off force: equal at the equator at 13.2e3 rad/s. It comes all
+// at once, so that the undamped springs along the surface go twice as far as they must: at 9e3, F = 0.46 F_c at the
+// equator, they hold that, 2 F cot < mu (2 F_c - F) at all latitudes.
 TEST(CreateDust, GrainsTurnWithTheirCarrierUntilItThrowsThemOff)
 {
   {
@@ -147,8 +147,8 @@ TEST(CreateDust, GrainsTurnWithTheirCarrierUntilItThrowsThemOff)
     EXPECT_EQ(tied(deck), 225.0);
     EXPECT_EQ(last_change(deck, 1), -1.0);
     EXPECT_EQ(last_change(deck, 2), -1.0);
-    // 0.18 rad on, at 6.8 m/s. They swing on their rolling contacts: a force of 0.23 F_c along the surface moves them by 0.59 um
-    // at the angular frequency sqrt(4 F_c R12/(7/5 m R^2)) = 1.94e5/s, which is 0.12 m/s
+    // 0.18 rad on, at 6.8 m/s. They swing on their rolling contacts: a force of 0.23 F_c along the surface moves them
+    // by 0.59 um at the angular frequency sqrt(4 F_c R12/(7/5 m R^2)) = 1.94e5/s, which is 0.12 m/s
     const double *xp = deck.atom("x", 1), *vp = deck.atom("v", 1);
     for (int grain = 2; grain <= 226; grain++) {
       const double *x = deck.atom("x", grain), *v = deck.atom("v", grain);

@@ -346,4 +346,4 @@ def _ranks() -> int:
 
 
 def _environment_number(names: Sequence[str], otherwise: int) -> int:
-    return next((int(os.environ[name]) for name in names if name in os.environ), otherwise)
+    return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), otherwise)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import errno
 import itertools
 import os
+import platform
+import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .errors import DustError, InvalidInput, MachineFault, shown
@@ -18,6 +20,9 @@ MACHINE_FAULTS = frozenset(
 )
 
 _numbers = itertools.count()
+
+#: begins the name of a file that is being written: ours, this machine's, and then the process's
+_PART = f".dust.{platform.node().replace('/', '-')[:64]}."
 
 
 def as_path(value: object, name: str) -> Path:
@@ -51,12 +56,25 @@ def read_text(path: Path) -> str:
         InvalidInput: it cannot be read, or is no such text.
         MachineFault: the disk fails.
     """
+    check_file(path)
     try:
         return path.read_bytes().decode("utf-8-sig")
     except OSError as error:
         raise file_error(path, error) from None
     except UnicodeDecodeError as error:
         raise InvalidInput(f"{path}: not a text in UTF-8 (byte {error.start + 1})") from None
+
+
+def check_file(path: Path) -> None:
+    """Refuse a device, which may have no end.
+
+    Raises:
+        InvalidInput: it is one.
+    """
+    with suppress(OSError):
+        mode = path.stat().st_mode
+        if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+            raise InvalidInput(f"{path}: is a device; allowed: the name of a file")
 
 
 @contextmanager
@@ -69,17 +87,37 @@ def replace_file(path: Path) -> Iterator[Path]:
         InvalidInput: the file cannot be there.
         MachineFault: the disk is full, or fails.
     """
-    part = path.with_name(f".dust.{os.getpid()}.{next(_numbers)}.part{path.suffix[:8]}")
+    part = path.with_name(f"{_PART}{os.getpid()}.{next(_numbers)}.part{path.suffix[:8]}")
     try:
         try:
             yield part
             _to_disk(part)
             os.replace(part, path)
             _to_disk(path.parent)
+            _clean_up(path.parent)
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
         raise file_error(path, error) from None
+
+
+def _clean_up(folder: Path) -> None:
+    """Remove what processes of this machine that were killed have left of their files."""
+    with suppress(OSError):
+        for name in os.listdir(folder):
+            process = name.removeprefix(_PART).split(".")[0] if name.startswith(_PART) else ""
+            if process.isdecimal() and not _runs(int(process)):
+                (folder / name).unlink(missing_ok=True)
+
+
+def _runs(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):
+        pass
+    return True
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InvalidInput, shortened
-from .files import as_path, file_error
+from .files import as_path, check_file, file_error
 
 #: what a frame must hold of each atom, and the type of the carrier
 COLUMNS = ("id", "type", "x", "y", "z", "radius", "c_tied")
@@ -68,6 +68,7 @@ def frame_sizes(path: str | Path) -> dict[int, int]:
 
 @contextmanager
 def _open(path: Path) -> Iterator[TextIO]:
+    check_file(path)
     try:
         with open(path, encoding="utf-8", errors="replace") as stream:
             yield stream

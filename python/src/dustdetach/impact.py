@@ -42,6 +42,9 @@ CONTACT_MODULUS = 210e9 / (2 * (1 - 0.3**2))
 GRAIN_DENSITY = 2700.0
 GRAIN_MODULUS = 1 / ((1 - 0.3**2) / 75e9 + (1 - 0.3**2) / 210e9)
 
+#: the pull-off force per mass must be that of gravity at least, m/s2, and the surface energy at most this, J/m2
+GRAVITY, LARGEST_SURFACE_ENERGY = 9.81, 10.0
+
 #: time steps that resolve an oscillation of a grain on its carrier
 LEAST_GRAIN_STEPS = 30
 
@@ -74,10 +77,10 @@ class Impact:
         coverage: X0, summed cross-section of the grains over the carrier's surface, above 0; random
             placement jams near 0.5, see `largest_coverage`.
         bare: half-angle of the bare cap where the carrier meets the wall, rad, from 0 to below pi.
-        grain_diameter: d_d, m, below the carrier's.
+        grain_diameter: d_d, m, below the carrier's radius; adhesion must hold a grain that is lifted by gravity.
         carrier_diameter: d_p, m, above 0 and at most 1.
-        hamaker: A_12 of grain and carrier, J, above 0.
-        z0: separation at which the van der Waals force equals the pull-off force, m, above 0.
+        hamaker: A_12 of grain and carrier, J, 1e-22 to 1e-17.
+        z0: separation at which the van der Waals force equals the pull-off force, m, 1e-11 to 1e-7.
         friction: mu_f between grain and carrier, from 0 to 10.
         wall_friction: mu between carrier and wall, from 0 to 10.
         grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0: below 1 grains ring, and more
@@ -125,11 +128,12 @@ class Impact:
         _above("angle", self.angle, 0.0, 90.0, "degrees")
         _from("restitution", self.restitution, 0.01, 1.0)
         _above("carrier_diameter", self.carrier_diameter, 0.0, 1.0, "m")
-        _above("grain_diameter", self.grain_diameter, 0.0, self.carrier_diameter, "m, the carrier's", included=False)
+        radius = self.carrier_diameter / 2
+        _above("grain_diameter", self.grain_diameter, 0.0, radius, "m, the carrier's radius", included=False)
         _from("bare", self.bare, 0.0, math.pi, "rad", included=False)
         _above("coverage", self.coverage, 0.0, self.largest_coverage, "(random placement jams there)")
-        _above("hamaker", self.hamaker, 0.0, 1e-15, "J")
-        _above("z0", self.z0, 0.0, 1e-6, "m")
+        _from("hamaker", self.hamaker, 1e-22, 1e-17, "J")
+        _from("z0", self.z0, 1e-11, 1e-7, "m")
         _from("friction", self.friction, 0.0, 10.0)
         _from("wall_friction", self.wall_friction, 0.0, 10.0)
         _from("grain_damping", self.grain_damping, 0.0, 100.0)
@@ -148,6 +152,7 @@ class Impact:
                 f"{(self.grain_diameter / self.carrier_diameter) ** 2 / 8:.3g} for these diameters"
             )
 
+        self._check_adhesion()
         steps = self.hertz_contact_time / self.timestep
         if not LEAST_STEPS <= steps <= MOST_STEPS:
             raise InvalidInput(
@@ -158,6 +163,24 @@ class Impact:
 
         if self.method == "resolved":
             self._check_resolved()
+
+    def _check_adhesion(self) -> None:
+        """What makes no sense as adhesion shows that something was given in other units; the fix asks for the same."""
+        surface_energy = self.hamaker / (18 * math.pi * self.z0**2)
+        if surface_energy > LARGEST_SURFACE_ENERGY:
+            least = math.sqrt(self.hamaker / (18 * math.pi * LARGEST_SURFACE_ENERGY))
+            raise InvalidInput(
+                f"--z0: {self.z0:g} m makes a surface energy of {surface_energy:.3g} J/m2; allowed: {least:.3g} to 1e-07 "
+                "m for this Hamaker constant"
+            )
+        effective = 1 / (2 / self.grain_diameter + 2 / self.carrier_diameter)
+        mass = math.pi / 6 * self.grain_diameter**3 * GRAIN_DENSITY
+        held = 3 * math.pi * surface_energy * effective / mass
+        if held < GRAVITY:
+            raise InvalidInput(
+                f"--grain-diameter: {self.grain_diameter:g} m makes grains that are held up to an acceleration of "
+                f"{held:.3g} m/s2; allowed: so small that this is at least {GRAVITY:g}"
+            )
 
     def _check_resolved(self) -> None:
         """What a resolved run needs beyond the ranges of all impacts."""

@@ -42,7 +42,7 @@ MOMENT_SIZE = 600
 
 
 #: bytes of the images that LAMMPS draws, and of a grain in a frame, a list of events or a texture file
-IMAGE_ROOM, ROW_ROOM = 4_000_000, 160
+IMAGE_ROOM, ROW_ROOM = 4_000_000, 100
 
 #: how long a resolved run takes at most, s, and the steps from frame to frame, both of the deck
 RESOLVED_LIMIT, FRAME_STEPS = 50e-6, 500

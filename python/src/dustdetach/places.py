@@ -23,7 +23,7 @@ def _checkout() -> Path | None:
 
 def _shares() -> list[Path]:
     """Folders ``share/dustdetach`` of an installation, nearest first."""
-    prefixes = [Path(sys.prefix), Path.home() / ".local", Path("/usr/local"), Path("/usr")]
+    prefixes = [Path(sys.prefix), Path(os.path.expanduser("~/.local")), Path("/usr/local"), Path("/usr")]
     return [prefix / "share" / "dustdetach" for prefix in prefixes]
 
 

@@ -428,4 +428,7 @@ def _plugin_digest() -> str:
 
 
 def _digest(*paths: Path) -> str:
-    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
+    try:
+        return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
+    except OSError as error:
+        raise LammpsMissing(f"{error.filename}: {error.strerror}") from None

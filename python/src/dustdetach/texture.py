@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InvalidInput, LammpsMissing, MachineFault, shown
-from .files import as_path, read_text, replace_file, scratch_folder, writable_file
+from .files import as_path, check_file, read_text, replace_file, scratch_folder, writable_file
 from .impact import Impact, as_impact, finite_number
 from .places import find_core
 from .session import lammps_file, lammps_session
@@ -138,6 +138,7 @@ def read_texture(path: str | Path) -> Texture:
         LammpsMissing: the core's library is not there.
     """
     path = as_path(path, "read_texture")
+    check_file(path)
     core = _core()
     message = create_string_buffer(1024)
     texture = core.dust_texture_read(os.fsencode(path), message, len(message))

@@ -1,0 +1,141 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "carrier_data.h"
+
+#include "detach_columns.h"
+
+#include "atom.h"
+#include "memory.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+CarrierData::CarrierData(LAMMPS *_lmp, bool rotation, bool orientations) :
+    Pointers(_lmp), state(nullptr), attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr),
+    began(nullptr), columns(nullptr), angle_used(rotation), orientation_used(orientations), words(0)
+{
+}
+
+CarrierData::~CarrierData()
+{
+  memory->destroy(state);
+  memory->destroy(attached);
+  memory->destroy(orientation);
+  memory->destroy(angle);
+  memory->destroy(window_mass);
+  memory->destroy(began);
+  memory->destroy(columns);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void CarrierData::set_words(int n)
+{
+  words = n;
+  memory->destroy(attached);
+  memory->grow(attached, atom->nmax, words, "dust/detach:attached");
+}
+
+void CarrierData::grow(int nmax)
+{
+  memory->grow(state, nmax, "dust/detach:state");
+  memory->grow(window_mass, nmax, "dust/detach:window_mass");
+  memory->grow(began, nmax, "dust/detach:began");
+  memory->grow(columns, nmax, DetachAtom::SIZE, "dust/detach:array_atom");
+  if (orientation_used) memory->grow(orientation, nmax, "dust/detach:orientation");
+  if (angle_used) memory->grow(angle, nmax, 3, "dust/detach:angle");
+  if (words) memory->grow(attached, nmax, words, "dust/detach:attached");
+}
+
+void CarrierData::copy(int i, int j)
+{
+  state[j] = state[i];
+  window_mass[j] = window_mass[i];
+  began[j] = began[i];
+  std::copy_n(columns[i], static_cast<int>(DetachAtom::SIZE), columns[j]);
+  if (orientation) orientation[j] = orientation[i];
+  if (angle) std::copy_n(angle[i], 3, angle[j]);
+  if (words) std::copy_n(attached[i], words, attached[j]);
+}
+
+void CarrierData::clear(int i)
+{
+  state[i] = NO_CARRIER;
+  window_mass[i] = began[i] = 0.0;
+  if (angle) std::fill_n(angle[i], 3, 0.0);
+  std::fill_n(columns[i], static_cast<int>(DetachAtom::SIZE), 0.0);
+}
+
+/* ----------------------------------------------------------------------
+   angles of a few steps may be summed, as they are small, at steps that depend on nothing else
+------------------------------------------------------------------------- */
+
+void CarrierData::turn()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (state[i] != NO_CARRIER) orientation[i].turn_by(angle[i], 1.0);
+    std::fill_n(angle[i], 3, 0.0);
+  }
+}
+
+Dust::Quaternion CarrierData::standing(int i) const
+{
+  Dust::Quaternion now = orientation ? orientation[i] : Dust::Quaternion();
+  if (angle) now.turn_by(angle[i], 1.0);
+  return now;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void CarrierData::close_window()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    columns[i][DetachAtom::WINDOW_MASS] = window_mass[i];
+    window_mass[i] = 0.0;
+  }
+}
+
+double CarrierData::attached_grains(int groupbit) const
+{
+  double sum = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && state[i] != NO_CARRIER) sum += columns[i][DetachAtom::ATTACHED];
+  return sum;
+}
+
+std::vector<bool> CarrierData::colliding(size_t collisions) const
+{
+  std::vector<bool> taken(collisions, false);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (state[i] >= 0) taken[state[i]] = true;
+  return taken;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int CarrierData::size() const { return 1 + DetachAtom::SIZE + 2 + orientation_size() + words; }
+
+void CarrierData::pack(int i, Dust::Packer &to) const
+{
+  to.put(state[i] >= 0 ? 0 : state[i]);
+  to.put(columns[i], DetachAtom::SIZE);
+  to.put(window_mass[i]);
+  to.put(began[i]);
+  if (orientation) to.put(&orientation[i], 1);
+  if (angle) to.put(angle[i], 3);
+  to.put(attached[i], words);
+}
+
+void CarrierData::unpack(int i, Dust::Unpacker &from)
+{
+  state[i] = static_cast<int>(from.number());
+  from.get(columns[i], DetachAtom::SIZE);
+  window_mass[i] = from.number();
+  began[i] = from.number();
+  if (orientation) from.get(&orientation[i], 1);
+  if (angle) from.get(angle[i], 3);
+  from.get(attached[i], words);
+}

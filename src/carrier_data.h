@@ -1,0 +1,65 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_DUST_CARRIER_DATA_H
+#define LMP_DUST_CARRIER_DATA_H
+
+#include "pointers.h"
+
+#include "core/pack.h"
+#include "core/quaternion.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// what a fix dust/detach keeps of each atom: arrays that LAMMPS has grow, and travel with the atom
+
+class CarrierData : protected Pointers {
+ public:
+  enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: number of the collision
+  int *state;
+  uint64_t **attached;              // a bit a grain, once there is a texture
+  Dust::Quaternion *orientation;    // if it is not the same for all for ever: TURN_EVERY steps ago at most, with
+  double **angle;                   // rotation: about which the carrier has turned since
+  double *window_mass;              // lost in the window that is not complete yet
+  double *began;                    // step in which the present contact did
+  double **columns;                 // of the per-atom array
+
+  // rotation: carriers turn; orientations: they do, or do not start all alike
+  CarrierData(class LAMMPS *, bool rotation, bool orientations);
+  ~CarrierData() override;
+  CarrierData(const CarrierData &) = delete;
+  CarrierData &operator=(const CarrierData &) = delete;
+
+  // words of attached bits from now on
+  void set_words(int words);
+  void grow(int nmax);
+  void copy(int i, int j);
+  void clear(int i);    // no carrier
+
+  static constexpr int TURN_EVERY = 16;
+  void turn();
+  Dust::Quaternion standing(int i) const;    // now
+
+  void close_window();    // its mass becomes a column
+  double attached_grains(int groupbit) const;
+  std::vector<bool> colliding(size_t collisions) const;    // by number of the collision, whether a carrier has it
+
+  // of a carrier; the number of its collision does not travel, 0 stands for it
+  int size() const;
+  int orientation_size() const { return angle_used ? 7 : orientation_used ? 4 : 0; }
+  void pack(int i, Dust::Packer &) const;
+  void unpack(int i, Dust::Unpacker &);
+
+ private:
+  bool angle_used, orientation_used;
+  int words;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
