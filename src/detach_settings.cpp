@@ -79,8 +79,10 @@ void DetachSettings::check(int igroup)
   if (friction == UNSET) friction = 0.3;
   if (rotation && (!atom->omega_flag || !atom->torque_flag))
     error->all(FLERR, "{} rotation yes needs atoms with spin and torque, such as atom_style sphere", command);
-  if (damping != UNSET && criteria.tangential != Dust::Criteria::INTEGRATE)
-    error->all(FLERR, "{} damping needs tangential integrate: no other law follows how a grain's contact moves",
+  if (damping != UNSET && criteria.tangential != Dust::Criteria::IMPULSE &&
+      criteria.tangential != Dust::Criteria::INTEGRATE)
+    error->all(FLERR,
+               "{} damping needs tangential impulse or integrate: no other law knows how a grain's contact rings",
                command);
   if (!emit) return;
   if (weightless)

@@ -4,6 +4,7 @@
 
 #include "fix_dust_detach.h"
 
+#include "core/tangential_law.h"
 #include "dust_atoms.h"
 
 #include "atom.h"
@@ -300,7 +301,8 @@ void FixDustDetach::collide(int i)
     record(i);
   }
   checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), coat.table->min_hold());
-  const bool grows = !collision.weak() || settings.criteria.tangential == Dust::Criteria::INTEGRATE;
+  const Dust::TangentialLaw *law = coat.table->tangential();
+  const bool grows = !collision.weak() || (law && law->needs_impulses);
   if (grows) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }

@@ -5,6 +5,7 @@
 #include "tangential_impulse.h"
 
 #include "geometry.h"
+#include "jkr.h"
 #include "patch_bits.h"
 
 #include <algorithm>
@@ -47,8 +48,8 @@ class Impulse {
   Impulse(const GrainTable &grains, const PastCollision &collision) :
       table(grains), past(collision), speed(std::sqrt(dot(past.dv, past.dv))),
       max_spin2(std::max(dot(past.spin_before, past.spin_before), dot(past.spin_after, past.spin_after))),
-      amplitude(std::min(0.5 * PI / past.duration, past.peak / speed)), way(max_spin2 > 0.0 ? 1.0 : 0.5),
-      drift(max_spin2 > 0.0 ? 0.92 : 0.2916)
+      amplitude(std::min(0.5 * PI / past.duration, past.peak / speed)), rings(past.impulses ? table.overshoot() : 0.0),
+      way(max_spin2 > 0.0 ? 1.0 : 0.5), drift(max_spin2 > 0.0 ? 0.92 : 0.2916)
   {
   }
 
@@ -81,18 +82,20 @@ class Impulse {
     }
     const double fastest2 =
         std::max({dot(slide.after, slide.after), dot(ground, ground), dot(slide.before, slide.before)});
-    if (outward_bound(slide.dvn, std::sqrt(fastest2), site.shell) <= site.hold) return false;
+    const double ringing = rings > 0.0 ? ringing_of(site) : 0.0, hold_at_end = site.hold - ringing;
+    if (outward_bound(slide.dvn, std::sqrt(fastest2), site.shell) <= hold_at_end) return false;
 
     double slip[3];
     for (int d = 0; d < 3; d++) slip[d] = slide.after[d] - ground[d];
     const double part = part_taken(site, slide.dvn, std::sqrt(dot(slip, slip)));
     for (int d = 0; d < 3; d++) slide.after[d] -= part * slip[d];
     const double end2 = dot(slide.after, slide.after), most2 = std::max(end2, dot(slide.before, slide.before));
-    if (outward_bound(slide.dvn, std::sqrt(most2), site.shell) <= site.hold) return false;
-    if (!located && end2 > site.hold * site.shell) return true;
-    if (!may_come_round(slide.dvn, std::sqrt(most2), site.shell)) return leaves(site, slide, PHASES.back(), release);
-    return std::any_of(PHASES.begin(), PHASES.end(),
-                       [&](const Phase &phase) { return leaves(site, slide, phase, release); });
+    if (outward_bound(slide.dvn, std::sqrt(most2), site.shell) <= hold_at_end) return false;
+    if (!located && end2 > hold_at_end * site.shell) return true;
+    if (may_come_round(slide.dvn, std::sqrt(most2), site.shell))
+      for (const Phase &phase : PHASES)
+        if (leaves(site, slide, phase, site.hold, release)) return true;
+    return leaves(site, slide, PHASES.back(), hold_at_end, release);
   }
 
  private:
@@ -100,6 +103,7 @@ class Impulse {
   const PastCollision &past;
   const double speed, max_spin2;    // |Dv|; of omega, squared
   const double amplitude;           // of -a, over Dv
+  const double rings;               // overshoot, 0 if the contacts do not
   const double way, drift;    // bounds of the share `way` and, times pi/2, of sine times way; with spin, of `time`
 
   // a grain's velocity relative to the carrier's centre, before the collision and v_t
@@ -112,7 +116,8 @@ class Impulse {
   {
     // the velocity of a grain lies between v_t0, what it is carried along with and what that was
     const double fastest = max_dvt + table.max_shell() * std::sqrt(max_spin2);
-    return !(outward_bound(max_dvn, fastest, table.carrier_radius()) <= min_hold);
+    const double ringing = rings * 2.0 / PI * past.peak;    // of a grain that feels the peak until the end
+    return !(outward_bound(max_dvn, fastest, table.carrier_radius()) + ringing <= min_hold);
   }
   // whether a grain that is never faster may come to the side from which inertia lifts it: where not, F_n only grows
   bool may_come_round(double dvn, double fastest, double shell) const
@@ -125,6 +130,20 @@ class Impulse {
     const double centrifugal = fastest * fastest / shell;
     if (!may_come_round(dvn, fastest, shell)) return centrifugal;
     return amplitude * std::max(0.0, dvn) + drift * speed * fastest / shell + centrifugal;
+  }
+
+  // what a contact that overshoots adds to F_n/m_d at the end: the load comes to its own in the last half period
+  double ringing_of(const GrainTable::Site &site) const
+  {
+    const double radius = site.shell - table.carrier_radius(), r12 = effective_radius(table.carrier_radius(), radius);
+    const double unit = std::sqrt(breaking_gap(site.lever * radius, r12) / site.hold), window = PI * unit;
+    const std::vector<ImpulseRecord::Span> &spans = past.impulses->spans();
+    double left = window, change = 0.0;
+    for (auto span = spans.rbegin(); span != spans.rend() && left > 0.0; ++span) {
+      change += std::min(1.0, left / span->duration) * dot(span->impulse, site.n);
+      left -= span->duration;
+    }
+    return rings * unit * std::max(0.0, 2.0 * change / (window * window));
   }
 
   // of the slip, by friction
@@ -140,7 +159,7 @@ class Impulse {
     return slip > 0.0 ? std::min(sliding, rolling) / slip : 0.0;
   }
 
-  bool leaves(const GrainTable::Site &site, const Slide &slide, const Phase &phase, Release &release) const
+  bool leaves(const GrainTable::Site &site, const Slide &slide, const Phase &phase, double hold, Release &release) const
   {
     double *n = release.direction, *w = release.velocity;
     for (int d = 0; d < 3; d++) {
@@ -149,7 +168,7 @@ class Impulse {
       n[d] = site.n[d] + past.duration / site.shell * (phase.time * slide.before[d] + phase.way * change);
     }
     const double w2 = dot(w, w);
-    if (amplitude * phase.sine * dot(past.dv, n) + w2 / site.shell <= site.hold) return false;
+    if (amplitude * phase.sine * dot(past.dv, n) + w2 / site.shell <= hold) return false;
     // on the sphere
     const double inv_size = 1.0 / std::sqrt(dot(n, n));
     for (int d = 0; d < 3; d++) n[d] *= inv_size;
@@ -180,3 +199,4 @@ void releases(const GrainTable &table, const PastCollision &past, const uint64_t
 }    // namespace
 
 const TangentialLaw Dust::TANGENTIAL_IMPULSE = {false, may_release, releases};
+const TangentialLaw Dust::TANGENTIAL_IMPULSE_RINGING = {true, may_release, releases};

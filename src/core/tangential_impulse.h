@@ -44,6 +44,14 @@ namespace Dust {
  * of F_n and the motion along n. */
 extern const TangentialLaw TANGENTIAL_IMPULSE;
 
+/*! The same with grains that ring: while the collision ends the load -a.n grows to 0, and a grain that its contact has
+ *  followed outward overshoots. It leaves if
+ *
+ *    v_t^2/|r_pd| + C sqrt(delta_c/c) |d(a.n)/dt| > c,    north,    C = overshoot(zeta) (normal_motion.h)
+ *
+ *  with the slope of the last half period of its swings, in which a goes to 0 evenly: twice its impulse over its square. */
+extern const TangentialLaw TANGENTIAL_IMPULSE_RINGING;
+
 }    // namespace Dust
 
 #endif

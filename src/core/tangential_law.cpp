@@ -10,12 +10,12 @@
 
 using namespace Dust;
 
-const TangentialLaw *Dust::tangential_law(Criteria::Tangential name)
+const TangentialLaw *Dust::tangential_law(Criteria::Tangential name, bool rings)
 {
   switch (name) {
     case Criteria::FRICTIONLESS: return &TANGENTIAL_FRICTIONLESS;
     case Criteria::ESTIMATE: return &TANGENTIAL_ESTIMATE;
-    case Criteria::IMPULSE: return &TANGENTIAL_IMPULSE;
+    case Criteria::IMPULSE: return rings ? &TANGENTIAL_IMPULSE_RINGING : &TANGENTIAL_IMPULSE;
     case Criteria::INTEGRATE: return &TANGENTIAL_INTEGRATION;
     case Criteria::OFF: break;
   }

@@ -48,8 +48,9 @@ struct TangentialLaw {
                    std::vector<Release> &);
 };
 
-/*! The law of this name; null for OFF */
-const TangentialLaw *tangential_law(Criteria::Tangential name);
+/*! The law of this name; null for OFF
+ *  \param rings  whether the grains' contacts are to ring, in a law that can tell */
+const TangentialLaw *tangential_law(Criteria::Tangential name, bool rings);
 
 }    // namespace Dust
 

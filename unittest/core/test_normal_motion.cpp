@@ -186,3 +186,33 @@ TEST(NormalMotion, SameAsAReferenceInTinySteps)
   EXPECT_LT(close, 60);
   EXPECT_LT(apart, 10);    // of 768
 }
+
+TEST(NormalMotion, OvershootTellsWhichGrowingLoadsBreakTheContact)
+{
+  const double unit = std::sqrt(DC / HOLD);
+  double before = 0.6;
+  for (double zeta : {0.0, 0.06, 0.2, 0.3, 0.5}) {
+    const double c = overshoot(zeta);
+    EXPECT_LT(c, 0.9 * before);
+    before = c;
+    // at the load that it is found at, and elsewhere by the straight line
+    struct Case {
+      double load, margin;
+    };
+    for (const Case &at : {Case{0.5, 0.01}, Case{0.2, 0.08}, Case{0.8, 0.13}}) {
+      if (zeta > 0.2 && at.load != 0.5) continue;
+      for (double share : {1.0 - at.margin, 1.0 + at.margin}) {
+        const double slope = share * (1.0 - at.load) / c / unit, time = 50.0 * unit;
+        Alone grain(zeta, at.load - 1.5 * slope * time);
+        for (int k = 1; k <= 100; k++)    // from rest to the slope
+          grain.advance(at.load - slope * time * (1.5 - 0.5 * k * k / 1e4), 0.01 * time);
+        grain.advance(at.load, time);
+        grain.motion.ring_out();
+        EXPECT_EQ(grain.motion.attached(0), share < 1.0) << "zeta " << zeta << " load " << at.load << " " << share;
+      }
+    }
+  }
+  // damped well enough, the contact follows its load
+  EXPECT_EQ(overshoot(0.7), 0.0);
+  EXPECT_EQ(overshoot(1.0), 0.0);
+}

@@ -3,6 +3,7 @@
 #include "tangential_impulse.h"
 
 #include "collision_reference.h"
+#include "normal_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -266,4 +267,55 @@ TEST(TangentialImpulse, GrainsThatComeToTheSideOfTheContactLeaveEarly)
     }
     EXPECT_NEAR(found, expected, 0.2 * expected) << speed << " m/s";
   }
+}
+
+TEST(TangentialImpulse, ContactsThatOvershootLetGoOfARingInClosedForm)
+{
+  // a that falls evenly to 0: v_t^2/|r_pd| + C sqrt(delta_c/c) |da/dt| cos t > c
+  History h;
+  constexpr int STEPS = 3000;
+  h.dt = 1.0e-9;
+  const double slope = 9.0e6 / (STEPS * h.dt);
+  for (int k = 0; k < STEPS; k++) h.a.push_back({0.0, 0.0, slope * (STEPS - k - 0.5) * h.dt});
+  const double r12 = effective_radius(RP, RD), time = STEPS * h.dt, dv = 0.5 * slope * time * time;
+  const double gap = breaking_gap(equilibrium_contact_radius(CALCITE.gamma, r12, CALCITE.modulus), r12);
+  std::map<double, double> share;
+  for (double zeta : {-1.0, 0.06, 0.2, 0.7, 1.0}) {
+    Material m = without_pivots();
+    m.damping = zeta;
+    const double rises = zeta < 0.0 ? 0.0 : overshoot(zeta) * std::sqrt(gap / HOLD) * slope;
+    const auto leaves = [&](double t) {
+      const double slip = dv * std::sin(t), taken = 0.3 * (2.0 * HOLD * time + dv * std::cos(t));
+      return std::pow(slip - std::min(2.0 / 7.0 * slip, taken), 2) / SHELL + rises * std::cos(t) > HOLD;
+    };
+    double inside = 0.5 * M_PI, outside = 0.0;
+    ASSERT_TRUE(leaves(inside));
+    for (int i = 0; i < 60; i++) (leaves(0.5 * (inside + outside)) ? inside : outside) = 0.5 * (inside + outside);
+    const double expected = 0.5 * std::cos(inside) / (0.5 + 0.5 * std::cos(0.33));
+    for (int seed = 1; seed <= 20; seed++) {
+      const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
+      share[zeta] += by_collision(texture, GrainTable(texture, m, with(Criteria::IMPULSE)), h).north / 4500.0 / 20.0;
+    }
+    EXPECT_NEAR(share[zeta], expected, 0.003) << zeta;
+  }
+  EXPECT_EQ(share[0.7], share[-1.0]);
+  EXPECT_EQ(share[1.0], share[-1.0]);
+  EXPECT_GT(share[0.2], share[-1.0] + 0.02);
+  EXPECT_GT(share[0.06], share[0.2] + 0.02);
+}
+
+TEST(TangentialImpulse, ContactsThatRingLetGoOfWhatFollowedOnesDo)
+{
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  for (double speed : {8.0, 12.0})
+    for (double zeta : {0.06, 0.2}) {
+      const History h = straight_impact(speed, 0.2733);
+      Material m = CALCITE;
+      m.damping = zeta;
+      const GrainTable table(texture, m, with(Criteria::IMPULSE)), followed(texture, m, with(Criteria::INTEGRATE));
+      const Outcome found = by_collision(texture, table, h);
+      expect_same(by_collision(texture, table, h, 17), found);
+      EXPECT_NEAR(found.left.size(), by_collision(texture, followed, h).left.size(), 0.01 * 4500)
+          << speed << " " << zeta;
+    }
 }

@@ -12,6 +12,8 @@ import numpy as np
 from .errors import InvalidInput, shown
 
 METHODS = ("functions", "resolved")
+#: laws of tangential lift-off that know how a grain's contact rings
+RINGING = ("impulse", "integrate")
 TANGENTIAL = ("impulse", "estimate", "integrate", "frictionless", "off")
 
 #: share of a surface that random sequential placement of discs covers before it jams
@@ -84,10 +86,11 @@ class Impact:
         friction: mu_f between grain and carrier, from 0 to 10.
         wall_friction: mu between carrier and wall, from 0 to 10.
         grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0: below 1 grains ring, and more
-            of them leave; resolved runs and ``tangential="integrate"`` use it.
+            of them leave; resolved runs and `RINGING` laws use it.
         seed: of the random texture, 1 to 900000000.
-        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``integrate`` (each grain's own sliding and
-            rolling), ``frictionless`` (Eq. 4) or ``off``; resolved runs do not use it.
+        tangential: lift-off on the far side: ``impulse`` (friction as a momentum, rolling as its limit), ``estimate``
+            (Eqs. 4-6), ``integrate`` (each grain's own sliding and rolling), ``frictionless`` (Eq. 4) or ``off``;
+            resolved runs do not use it.
         rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs always
             follow it.
         timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
