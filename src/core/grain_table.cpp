@@ -52,8 +52,7 @@ void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
 
 GrainTable::GrainTable(const Texture &texture, const Material &material, const Criteria &criteria) :
     matter(material), asked(criteria), ring(material.damping >= 0.0 ? Dust::overshoot(material.damping) : 0.0),
-    law(tangential_law(criteria.tangential, ring > 0.0)), rp(texture.carrier_radius),
-    sites(texture.grains.size())
+    law(tangential_law(criteria.tangential, ring > 0.0)), rp(texture.carrier_radius), sites(texture.grains.size())
 {
   const int n = grains();
   all.assign((n + PATCH - 1) / PATCH, ~uint64_t(0));

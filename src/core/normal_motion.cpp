@@ -17,7 +17,6 @@ namespace {
 
 constexpr double STIFFNESS = 1.8 / ROOT_6;    // k0 delta_c/F_c: 12/(20/3 6^(1/3)), the slope of the branch at y = 1
 constexpr double STEP = 0.3;                  // times the frequency: a period in 21 steps
-constexpr double PERIODS = 3.0;               // after the collision
 
 double overlap_of(double y) { return ROOT_6 * (2.0 * y * y * y - 4.0 / 3.0) * y; }
 double slope_of(double y) { return 1.0 / (ROOT_6 * (8.0 * y * y * y - 4.0 / 3.0)); }
@@ -102,11 +101,11 @@ void NormalMotion::advance(const double *load, double dt, int steps)
 
 /* ---------------------------------------------------------------------- */
 
-void NormalMotion::ring_out()
+double NormalMotion::longest_period() const
 {
   double max_time = 0.0;
   for (int i = 0; i < count; i++) max_time = std::max(max_time, here[i] / std::max(rate[i], 1e-300));
-  if (max_time > 0.0) advance(G, PERIODS * 2.0 * PI / std::sqrt(STIFFNESS) * max_time);
+  return 2.0 * PI / std::sqrt(STIFFNESS) * max_time;
 }
 
 /* ----------------------------------------------------------------------
@@ -132,7 +131,7 @@ double Dust::overshoot(double zeta)
       for (int i = 0; i < LANES; i++) load[i] = LOAD + (part - 0.75) * RISE * slope[i];
       motion.advance(load, RISE / PIECES);
     }
-    motion.advance(load, RISE);
+    motion.advance(RISE);
     int stay = 0;
     while (stay < LANES && motion.attached(stay)) stay++;
     if (stay == LANES) return 0.0;

@@ -42,8 +42,11 @@ class NormalMotion {
   /*! A step of the time dt in which the load F_n/F_c of each grain comes to load[grain], evenly */
   void advance(const double *load, double dt);
 
-  /*! The time after the collision in which a grain may still leave at the load it has: some periods of its ringing */
-  void ring_out();
+  /*! The same at the loads that there are */
+  void advance(double dt) { advance(G, dt); }
+
+  /*! Longest period of small swings of those that are attached */
+  double longest_period() const;
 
   bool attached(int grain) const { return here[grain] > 0.0; }
 

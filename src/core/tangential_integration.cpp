@@ -83,7 +83,7 @@ class Follower {
  public:
   Follower(const GrainTable &grains, const PastCollision &collision, std::vector<Release> &leaving) :
       table(grains), past(collision), released(leaving), steps(substeps(collision)), rings(::rings(grains)),
-      motion(grains.material().friction, grains.material().rolling), ringing(grains.material().damping)
+      motion(grains.material().friction, grains.material().rolling, ::rings(grains)), ringing(grains.material().damping)
   {
   }
 
@@ -105,18 +105,13 @@ class Follower {
   // those that are still to be followed
   void run()
   {
-    double load[SurfaceMotion::LANES];
-    for (const Substep &step : steps) {
-      motion.advance(step.acceleration, step.spin_after, step.dt);
-      if (!rings) continue;
-      for (int k = 0; k < motion.grains(); k++)
-        load[k] = motion.outward_force(k, step.acceleration_after) / table.site(bits[k]).hold;
-      ringing.advance(load, step.dt);
-    }
-    motion.release();
-    ringing.ring_out();
+    for (const Substep &step : steps) advance(step.acceleration, step.acceleration_after, step.spin_after, step.dt);
+    if (rings)
+      ring_out();
+    else
+      motion.release();
     for (int k = 0; k < motion.grains(); k++) {
-      if (motion.attached(k) && !(rings && !ringing.attached(k))) continue;
+      if (motion.attached(k)) continue;
       Release release = {bits[k], {}, {}};
       for (int d = 0; d < 3; d++) {
         release.direction[d] = motion.direction(k, d);
@@ -136,7 +131,35 @@ class Follower {
   const bool rings;
   SurfaceMotion motion;
   NormalMotion ringing;
+  double load[SurfaceMotion::LANES];    // F_n/F_c, if they ring
   int bits[SurfaceMotion::LANES];
+
+  // a grain that rings leaves where its contact breaks, not before
+  void advance(const double *acceleration, const double *after, const double *spin, double dt)
+  {
+    motion.advance(acceleration, spin, dt);
+    if (!rings) return;
+    for (int k = 0; k < motion.grains(); k++) load[k] = motion.outward_force(k, after) / table.site(bits[k]).hold;
+    ringing.advance(load, dt);
+    for (int k = 0; k < motion.grains(); k++)
+      if (motion.attached(k) && !ringing.attached(k)) motion.let_go(k);
+  }
+
+  // after the collision: some periods, and more as long as a contact is drawn out by more than it can hold but damped
+  void ring_out()
+  {
+    constexpr int PARTS = 4, PERIODS = 3, MAX_PERIODS = 31;
+    constexpr double NONE[3] = {0.0, 0.0, 0.0};
+    const double period = ringing.longest_period();
+    for (int k = 0; k < PARTS * MAX_PERIODS && (k < PARTS * PERIODS || any_opens()); k++)
+      advance(NONE, NONE, past.spin_after, period / PARTS);
+  }
+  bool any_opens() const
+  {
+    for (int k = 0; k < motion.grains(); k++)
+      if (motion.attached(k) && load[k] > 1.0) return true;
+    return false;
+  }
   static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
 };
 
