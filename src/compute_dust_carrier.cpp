@@ -140,8 +140,8 @@ double ComputeDustCarrier::compute_scalar()
 }
 
 /* ----------------------------------------------------------------------
-   last steps at which a neck formed or broke, a contact slid or rolled beyond its limit, of all contacts with carriers: those
-   of pairs of types of which a carrier has one. What grains do among themselves once they are off does not count.
+   last steps at which a neck formed or broke, a contact slid or rolled beyond its limit, of all contacts with carriers:
+   those of pairs of types of which a carrier has one. What grains do among themselves once they are off does not count.
 ------------------------------------------------------------------------- */
 
 void ComputeDustCarrier::compute_vector()

@@ -159,8 +159,8 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const Du
 
 /* ----------------------------------------------------------------------
    of a carrier that meets a wall of its material with the middle of its bare cap, as fast as it moves that way now: no
-   grain may reach the wall before the carrier's largest overlap, as it would brake the carrier. Which side that is is not
-   known where textures lie at random.
+   grain may reach the wall before the carrier's largest overlap, as it would brake the carrier. Which side that is is
+   not known where textures lie at random.
 ------------------------------------------------------------------------- */
 
 void CreateDust::warn_of_crushed_grains(const Dust::Texture &texture, const std::vector<Carrier> &carriers,

@@ -24,7 +24,7 @@ namespace LAMMPS_NS {
 
 class CreateDust : public Command {
  public:
-  CreateDust(class LAMMPS *_lmp) : Command(_lmp) {}
+  explicit CreateDust(class LAMMPS *_lmp) : Command(_lmp) {}
   void command(int, char **) override;
 
  private:

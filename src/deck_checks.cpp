@@ -21,8 +21,8 @@
 
 using namespace LAMMPS_NS;
 
-// steps that a contact should have at least: at 8 m/s 50 change the ratio by 0.0003, 20 by 0.003 and 10 by 0.008. Softened
-// contacts are for beds, which cannot afford as many, and are right to about 0.01
+// steps that a contact should have at least: at 8 m/s 50 change the ratio by 0.0003, 20 by 0.003 and 10 by 0.008.
+// Softened contacts are for beds, which cannot afford as many, and are right to about 0.01
 static constexpr double ENOUGH_STEPS = 50.0, ENOUGH_SOFT_STEPS = 12.0;
 static constexpr double SOFTER = 1.05;               // by which a modulus may be too low
 static constexpr double MUCH_SOFTER = 2.0;           // in accelerations, where the modulus is not known
@@ -34,7 +34,7 @@ DeckChecks::DeckChecks(LAMMPS *_lmp, const Fix *_dust, DetachSettings &_settings
     Pointers(_lmp), dust(_dust), settings(_settings), fixes(_lmp, _dust, _settings.contacts), sizes_change(false),
     modulus(
         Dust::combined_modulus(_settings.elastic[2], _settings.elastic[3], _settings.elastic[2], _settings.elastic[3])),
-    softest(1.0), soft_wall(false), noticed(0), told(0)
+    softest(1.0), soft_wall(false), may_be_soft(false), noticed(0), told(0)
 {
 }
 
@@ -75,7 +75,7 @@ void DeckChecks::check_command() const
 }
 
 /* ----------------------------------------------------------------------
-   of those in the group; if none is there yet, all that may come
+   of those in the group and of those that are to be inserted
 ------------------------------------------------------------------------- */
 
 std::vector<int> DeckChecks::types_of_carriers() const
@@ -84,10 +84,14 @@ std::vector<int> DeckChecks::types_of_carriers() const
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & dust->groupbit) types[atom->type[i]] = 1;
   MPI_Allreduce(MPI_IN_PLACE, types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
-  if (std::count(types.begin(), types.end(), 1) == 0) {
-    std::fill(types.begin() + 1, types.end(), 1);
-    types[settings.emit] = 0;
-  }
+  for (const char *style : {"^pour", "^deposit"})
+    for (Fix *fix : modify->get_fix_by_style(style))
+      for (int t = 1; t <= atom->ntypes; t++) {
+        int type = t;    // in return for which it says the largest radius
+        const auto *radius = static_cast<const double *>(fix->extract("radius", type));
+        if (radius && *radius > 0.0) types[t] = 1;
+      }
+  types[settings.emit] = 0;
   return types;
 }
 
@@ -95,7 +99,7 @@ std::vector<int> DeckChecks::types_of_carriers() const
 
 void DeckChecks::look_at_contacts()
 {
-  const DeckContacts deck(lmp, types_of_carriers());
+  const DeckContacts deck(lmp, types_of_carriers(), [this](const Fix *fix) { return fixes.acts_on_carriers(fix); });
   contacts = deck.all;
   unread = fixes.unread_contacts();
   for (const std::string &style : deck.other_styles) unread.push_back("pair_style " + style);
@@ -112,6 +116,8 @@ void DeckChecks::look_at_contacts()
     soft = contact.where;
     soft_wall = contact.wall;
   }
+  may_be_soft = softest > SOFTER || !unread.empty();
+  for (const CarrierContact &contact : contacts) may_be_soft = may_be_soft || contact.law == CarrierContact::HOOKE;
   for (const std::string &style : deck.far_styles)
     if (comm->me == 0)
       error->warning(
@@ -176,8 +182,8 @@ void DeckChecks::check_all_sizes(double radius) const
 }
 
 /* ----------------------------------------------------------------------
-   the only atom that carrier i touches; NOBODY if only walls can push it, and then one, or such that are no more than 90
-   degrees apart
+   the only atom that carrier i touches; NOBODY if only walls can push it, and then one, or such that are no more than
+   90 degrees apart
 ------------------------------------------------------------------------- */
 
 int DeckChecks::neighbour(int i) const
@@ -237,7 +243,7 @@ void DeckChecks::collision_over(int i, double steps, const Course &course)
         fmt::format("carrier {} was in contact for {} steps, too few to follow its collision: use a timestep of {:.2g} "
                     "or less, for {} steps",
                     atom->tag[i], steps, update->dt * steps / enough, enough));
-  if (noticed & bit(SOFT)) return;
+  if ((noticed & bit(SOFT)) || !may_be_soft) return;
   const Softness softness = soft_contact(i, steps, course);
   if (softness.factor <= 1.0 || course.peak * softness.factor <= course.min_hold) return;
   notice(SOFT,
@@ -253,10 +259,10 @@ void DeckChecks::collision_over(int i, double steps, const Course &course)
 
 DeckChecks::Softness DeckChecks::soft_contact(int i, double steps, const Course &course) const
 {
-  const std::string but_walls = "; a wall that is as soft in truth needs nothing";
+  constexpr const char *BUT_WALLS = "; a wall that is as soft in truth needs nothing";
   if (softest > SOFTER)
     return {std::pow(softest, HERTZ), fmt::format("{} is {:.4g} times", soft, softest * settings.stiffen),
-            fmt::format("give stiffen {:.4g}{}", softest * settings.stiffen, soft_wall ? but_walls : "")};
+            fmt::format("give stiffen {:.4g}{}", softest * settings.stiffen, soft_wall ? BUT_WALLS : "")};
   // two alike, or one and a wall
   const double mass = atom->rmass[i], radius = atom->radius[i];
   const double speed = 0.5 * std::sqrt(Dust::dot(course.impulse, course.impulse));
@@ -268,13 +274,15 @@ DeckChecks::Softness DeckChecks::soft_contact(int i, double steps, const Course 
     const double share = contact.wall ? 1.0 : 0.5, peak = speed / share * std::sqrt(contact.stiffness * share * mass);
     const double factor = stiff_peak(share) / (peak * settings.stiffen_acceleration);
     if (factor > MUCH_SOFTER)
-      return {factor, contact.where + " is", "use a larger stiffness, or stiffen" + (contact.wall ? but_walls : "")};
+      return {factor, contact.where + " is",
+              std::string("use a larger stiffness, or stiffen") + (contact.wall ? BUT_WALLS : "")};
   }
   if (!unread.empty() && steps > 0.0 && bounced(i, steps, course.impulse)) {
     const int j = neighbour(i);
     const double factor = stiff_peak(j == NOBODY ? 1.0 : 0.5) / (mass * course.peak);
     if (factor > MUCH_SOFTER && j != SEVERAL)
-      return {factor, "contacts of " + utils::join_words(unread, ", ") + " are", "use a larger stiffness" + but_walls};
+      return {factor, "contacts of " + utils::join_words(unread, ", ") + " are",
+              std::string("use a larger stiffness") + BUT_WALLS};
   }
   return {1.0, "", ""};
 }

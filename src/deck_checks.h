@@ -83,6 +83,7 @@ class DeckChecks : protected Pointers {
   double softest;      // factor by which the softest Hertz contact is softer than that and stiffen say, or 1
   std::string soft;    // which it is
   bool soft_wall;      // of a wall
+  bool may_be_soft;    // or a Hooke contact, or one that cannot be read
 
   unsigned noticed, told;    // bits of what this rank has noticed, and of what has been said
   std::array<std::string, NNOTICES> lines;

@@ -57,10 +57,10 @@ double stiffness_of(GranularModel *model, bool mixed)
 bool damping_pulls(GranularModel *model)
 {
   if (model->limit_damping) return false;
-  if (law_of(model) == CarrierContact::OTHER) return true;    // not to be had without a contact at hand
-  model->meff = 1.0;
+  if (model->damping_model->name == "mdr") return true;    // not to be had without a contact at hand
+  model->meff = model->delta = model->contact_radius = 1.0;
   model->vnnr = 1.0e30;
-  model->Fnormal = unit_force(model);
+  model->Fnormal = law_of(model) == CarrierContact::OTHER ? 0.0 : unit_force(model);
   return model->Fnormal + model->damping_model->calculate_forces() < 0.0;
 }
 
@@ -102,7 +102,8 @@ CarrierContact::CarrierContact(const std::string &_where, GranularModel *model, 
 
 /* ---------------------------------------------------------------------- */
 
-DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<int> &types) : Pointers(_lmp)
+DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<int> &types, const std::function<bool(const Fix *)> &acts) :
+    Pointers(_lmp)
 {
   if (force->pair && !utils::strmatch(force->pair_style, "^hybrid"))
     look_at_style(force->pair, force->pair_style, types);
@@ -118,7 +119,7 @@ DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<int> &types) : Pointe
 
   for (Fix *fix : modify->get_fix_list())
     if (const auto *wall = dynamic_cast<FixWallGran *>(fix))
-      if (wall->model) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, true);
+      if (wall->model && acts(fix)) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, true);
 }
 
 /* ---------------------------------------------------------------------- */

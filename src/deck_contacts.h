@@ -7,6 +7,7 @@
 
 #include "pointers.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,11 +33,11 @@ struct CarrierContact {
   std::string not_stiffened;    // why softening it by one factor is not softening all of its forces alike, or empty
 };
 
-// the models between the carriers of these types, types[type] != 0, and between carriers and walls
+// the models between the carriers of these types, types[type] != 0, and between carriers and their walls
 
 class DeckContacts : protected Pointers {
  public:
-  DeckContacts(class LAMMPS *, const std::vector<int> &types);
+  DeckContacts(class LAMMPS *, const std::vector<int> &types, const std::function<bool(const class Fix *)> &acts);
 
   std::vector<CarrierContact> all;
   // pair styles that push carriers but are no granular models; those of them that act beyond contact

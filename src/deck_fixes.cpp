@@ -35,15 +35,18 @@ bool is_wall(const Fix *fix)
          utils::strmatch(fix->style, "^smd/wall_surface");
 }
 
-// a fix setforce that makes all of the force zero, everywhere; for its members, which have no other way out
+// a fix setforce that makes all of the force zero, everywhere; a class for its members, which have no other way out
 class ZeroForce : public FixSetForce {
  public:
   static bool is(const Fix *fix)
   {
     const auto *set = dynamic_cast<const FixSetForce *>(fix);
     if (!set || set->*(&ZeroForce::region)) return false;
+    constexpr int NONE = 0;    // leaves this component as it is
     for (auto style : {&ZeroForce::xstyle, &ZeroForce::ystyle, &ZeroForce::zstyle})
-      if (set->*style != CONSTANT) return false;
+      if (set->*style == NONE) return false;
+    for (auto variable : {&ZeroForce::xstr, &ZeroForce::ystr, &ZeroForce::zstr})
+      if (set->*variable) return false;
     return set->*(&ZeroForce::xvalue) == 0.0 && set->*(&ZeroForce::yvalue) == 0.0 && set->*(&ZeroForce::zvalue) == 0.0;
   }
 };

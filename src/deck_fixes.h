@@ -27,6 +27,8 @@ class DeckFixes : protected Pointers {
 
   // whether the atoms with this mask have no acceleration, whatever forces act on them
   bool holds(int mask) const { return (mask & holding) || !(mask & moving); }
+  // whether a fix's group has carriers, or is to have them; on all ranks
+  bool acts_on_carriers(const class Fix *) const;
   // fixes with contact forces that are no granular walls: "fix w (indent)"
   std::vector<std::string> unread_contacts() const;
   // those that may keep an atom from moving as its contact force says
@@ -40,7 +42,6 @@ class DeckFixes : protected Pointers {
   bool is_contact(const class Fix *) const;
   bool changes_force(const Fix *) const;
   void check_contacts() const;
-  bool acts_on_carriers(const Fix *) const;
   bigint count(const std::function<bool(int)> &question) const;
   void look_at_walls() const;
   void look_at_motion(bool rotation);

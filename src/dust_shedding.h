@@ -15,10 +15,10 @@
 
 namespace LAMMPS_NS {
 
-/* Grains that leave their carriers. Mass and momentum go in the step in which the grain does. To become an atom it waits
-   for a time at which LAMMPS can take one, and for the end of its carrier's collision. Until then it belongs to the data of
-   its carrier, whatever happens to that one, and flies freely from where it left. If there is no room for it then, it goes
-   back to its carrier. */
+/* Grains that leave their carriers. Mass and momentum go in the step in which the grain does. To become an atom it
+   waits for a time at which LAMMPS can take one, and for the end of its carrier's collision. Until then it belongs
+   to the data of its carrier, whatever happens to that one, and flies freely from where it left. If there is no room
+   for it then, it goes back to its carrier. */
 
 class DustShedding : protected Pointers {
  public:
@@ -51,8 +51,8 @@ class DustShedding : protected Pointers {
   bool masses_changed();
   void mass_changed() { changed = true; }
 
-  // all ranks: the grains of those carriers become atoms or go back; ghosts are gone then. Returns how many of this rank
-  // went back. ready(i): whether carrier i has left its collision
+  // all ranks: the grains of those carriers become atoms or go back; ghosts are gone then. Returns how many of this
+  // rank went back. ready(i): whether carrier i has left its collision
   double emit_grains(const std::function<bool(int)> &ready);
   // the same for all of them at the end of a run: LAMMPS has ghosts and neighbours again
   double emit_all();

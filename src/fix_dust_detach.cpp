@@ -121,8 +121,8 @@ void FixDustDetach::init()
 }
 
 /* ----------------------------------------------------------------------
-   carriers that are in contact at the very start: nothing has counted this force yet. They are at rest unless it can make a
-   grain slide. Others have been counted by the run before, or by the one that wrote the restart file.
+   carriers that are in contact at the very start: nothing has counted this force yet. They are at rest unless it can
+   make a grain slide. Others have been counted by the run before, or by the one that wrote the restart file.
 ------------------------------------------------------------------------- */
 
 void FixDustDetach::setup(int /*vflag*/)

@@ -44,9 +44,9 @@ GranSubModNormalJKRVdWCut::GranSubModNormalJKRVdWCut(GranularModel *_gm, LAMMPS 
 }
 
 /* ----------------------------------------------------------------------
-   Neck, rolling displacement and rate of the overlap are kept at the end of the history, in the place of the heat model, the
-   last one: there they move no value of other models in the same pair style, which LAMMPS would then copy wrongly when i and j
-   change places.
+   Neck, rolling displacement and rate of the overlap are kept at the end of the history, in the place of the heat
+   model, the last one: there they move no value of other models in the same pair style, which LAMMPS would then copy
+   wrongly when i and j change places.
 ------------------------------------------------------------------------- */
 
 void GranSubModNormalJKRVdW::init()
@@ -66,8 +66,8 @@ int GranSubModNormalJKRVdW::neck_place() const { return gm->heat_model->history_
 double *GranSubModNormalJKRVdW::rolling_in(double *history) const { return history + neck_place() + PLACE_OF_ROLLING; }
 
 /* ----------------------------------------------------------------------
-   When i and j change places, LAMMPS copies as many values as this model has, but keeps room for the largest sub-model of
-   each kind between them: count the gaps too.
+   When i and j change places, LAMMPS copies as many values as this model has, but keeps room for the largest sub-model
+   of each kind between them: count the gaps too.
 ------------------------------------------------------------------------- */
 
 void GranSubModNormalJKRVdW::lay_out_history()
@@ -110,8 +110,8 @@ void GranSubModNormalJKRVdW::coeffs_to_local()
 }
 
 /* ----------------------------------------------------------------------
-   a mixed model gets the E and nu of a body whose contact with its like has the two materials' combined moduli E* and G*, for
-   models that ask it for them: 2 G* = E* (1 - nu)/(2 - nu)
+   a mixed model gets the E and nu of a body whose contact with its like has the two materials' combined moduli E* and
+   G*, for models that ask it for them: 2 G* = E* (1 - nu)/(2 - nu)
 ------------------------------------------------------------------------- */
 
 void GranSubModNormalJKRVdW::mix_coeffs(double *icoeffs, double *jcoeffs)
@@ -216,9 +216,9 @@ double GranSubModNormalJKRVdW::calculate_contact_radius()
 }
 
 /* ----------------------------------------------------------------------
-   Damping models take the velocity at which the surfaces part from gm->vnnr: give them that of this step. The rate is even
-   under a swap of i and j, so it is kept times the sign of the neck. Where history must not change, in setup and for output,
-   that of the last step is used again; a new neck has none yet, and LAMMPS' velocity serves.
+   Damping models take the velocity at which the surfaces part from gm->vnnr: give them that of this step. The rate is
+   even under a swap of i and j, so it is kept times the sign of the neck. Where history must not change, in setup and
+   for output, that of the last step is used again; a new neck has none yet, and LAMMPS' velocity serves.
 ------------------------------------------------------------------------- */
 
 void GranSubModNormalJKRVdW::use_overlap_rate(bool anew)

@@ -45,8 +45,8 @@ class GranSubModNormalJKRVdW : public GranSubModNormal {
 
   LastEvents last_events;    // slide and roll by the rolling model
 
-  // of a contact with this history: 0 without a neck, else a/a0 or -a/a0; LAMMPS negates all history when i and j change
-  // places
+  // of a contact with this history: 0 without a neck, else a/a0 or -a/a0; LAMMPS negates all history when i and j
+  // change places
   double neck_in(const double *history) const { return history[neck_place()]; }
   // three values that a rolling model may keep in this history
   double *rolling_in(double *history) const;

@@ -31,8 +31,8 @@ template <typename Model> static auto allow_synchronized_verlet(Model *model, in
 template <typename Model> static void allow_synchronized_verlet(Model *, long) {}
 
 /* ----------------------------------------------------------------------
-   The rolling displacement is even under a swap of i and j, as the rolling velocity is, but LAMMPS negates all history: so
-   it is kept times the sign of the neck, which is negated with it, and in the normal model's place.
+   The rolling displacement is even under a swap of i and j, as the rolling velocity is, but LAMMPS negates all history:
+   so it is kept times the sign of the neck, which is negated with it, and in the normal model's place.
 ------------------------------------------------------------------------- */
 
 GranSubModRollingDominikTielens::GranSubModRollingDominikTielens(GranularModel *_gm, LAMMPS *_lmp) :

@@ -69,6 +69,7 @@ void Keywords::read(const std::vector<Keyword> &table, int first)
     const auto found = std::find_if(table.begin(), table.end(), [this](const Keyword &k) { return k.name == keyword; });
     if (found == table.end()) {
       std::vector<std::string> known;
+      known.reserve(table.size());
       for (const Keyword &k : table) known.push_back(k.name);
       error->all(FLERR, "{} has no keyword {}: use {}", command, keyword, alternatives(known));
     }

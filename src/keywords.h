@@ -30,9 +30,9 @@ struct Range {
   static Range above(double low);
   static Range at_least(double low);
   static Range from_to(double low, double high);
-  Range at_most(double high) const;
-  Range below(double high) const;
-  Range in(const std::string &units) const;    // to be named with the range
+  Range at_most(double most) const;
+  Range below(double most) const;
+  Range in(const std::string &their_units) const;    // to be named with the range
 
   bool holds(double) const;
   std::string text() const;    // as in "must be ...": "above 0 and at most 1"

@@ -100,9 +100,9 @@ Collision::Strength Collision::strength_of(const GrainTable &table, const Motion
   return s;
 }
 
-void Collision::add(const GrainTable &table, const Motion &motion, double dt)
+void Collision::add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively)
 {
-  course.activity.count_step();
+  course.activity.add(size, lively);
   course.time += dt;
   for (int d = 0; d < 3; d++) course.impulse[d] += motion.acceleration[d] * dt;
   const TangentialLaw *law = table.tangential();
@@ -115,13 +115,12 @@ void Collision::add(const GrainTable &table, const Motion &motion, double dt)
 
 void Collision::step_weak(const GrainTable &table, const Motion &motion, const Strength &strength, double dt)
 {
-  const bool first = !course.activity.has_begun();
-  add(table, motion, dt);
-  if (!first && strength.size2 <= course.peak2) return;
+  const bool lively = strength.size2 > course.peak2 || !course.activity.has_begun();
+  add(table, motion, strength.size, dt, lively);
+  if (!lively) return;
   course.peak2 = strength.size2;
   course.peak = motion;
   std::copy_n(course.angle, 3, course.peak_angle);
-  course.activity.mark_lively();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -136,11 +135,8 @@ void Collision::step_strong(const GrainTable &table, const Motion &motion, const
     s.state.lively.time = course.time;
     std::copy_n(course.impulse, 3, s.state.lively.impulse);
   }
-  add(table, motion, dt);
-  if (lively) {
-    course.activity.mark_lively();
-    std::copy_n(motion.spin, 3, s.state.lively.spin);
-  }
+  add(table, motion, strength.size, dt, lively);
+  if (lively) std::copy_n(motion.spin, 3, s.state.lively.spin);
 
   const bool rotates = strength.rotation > ROUND_OFF * strength.size;
   const Motion m = motion.in_body(s.state.now);

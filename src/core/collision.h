@@ -143,7 +143,7 @@ class alignas(64) Collision {
   static Strength strength_of(const GrainTable &table, const Motion &motion);
 
   void become_strong(const GrainTable &table, Workspace &work);
-  void add(const GrainTable &table, const Motion &motion, double dt);
+  void add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively);
   void step_weak(const GrainTable &table, const Motion &motion, const Strength &strength, double dt);
   void step_strong(const GrainTable &table, const Motion &motion, const Strength &strength, double dt,
                    uint64_t *attached, Workspace &work);

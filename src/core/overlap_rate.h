@@ -14,9 +14,10 @@ namespace Dust {
  *
  *   rate = u + (o - decay dt rate)/2,   o = u - (u - decay dt rate of the step before)
  *
- * The damping is implicit, so that it is stable however large decay dt, and the others are taken from the step before: second
- * order in dt. Velocity Verlet itself offers the velocity of the middle with the normal of the end, whose product is of first
- * order: it lags by half a step, and on a path of radius r with the speed w it has an outward part w^2 dt/(2 r). */
+ * The damping is implicit, so that it is stable however large decay dt, and the others are taken from the step before:
+ * second order in dt. Velocity Verlet itself offers the velocity of the middle with the normal of the end, whose
+ * product is of first order: it lags by half a step, and on a path of radius r with the speed w it has an outward part
+ * w^2 dt/(2 r). */
 struct OverlapRate {
   double overlap;     // at the last step, length
   double coasting;    // mean rate of the step to come if only the damping acted, length/time

@@ -24,8 +24,8 @@ typedef struct DustTexture DustTexture;
 /*! Reads a texture file and checks it against all rules of its format.
  *
  *  \param path     of the file, in the bytes of the file system
- *  \param message  what is wrong: one line of printable ASCII without the name of the file. It begins with "line N: " if
- *                  it is about the contents. Cut to size and ended with a 0; "" if nothing is wrong
+ *  \param message  what is wrong: one line of printable ASCII without the name of the file. It begins with "line N: "
+ *                  if it is about the contents. Cut to size and ended with a 0; "" if nothing is wrong
  *  \param size     of message, in bytes
  *  \return         the texture, to be given to dust_texture_free(), or a null pointer if something is wrong */
 DUST_EXPORT DustTexture *dust_texture_read(const char *path, char *message, int size);

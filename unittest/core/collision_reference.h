@@ -62,7 +62,8 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
   std::vector<Vec> spin(h.a.size());
   Vec now = h.spin;
   size_t first = 0, lively = 0;    // of the burst, and the last of it
-  double peak = 0.0;               // |a|
+  size_t counts = 0;               // the last step that is lively or in which |a| has fallen by an eighth since one
+  double peak = 0.0, low = 0.0;
   bool rests = false, weak = true;
   for (size_t k = 0; k < h.a.size() && !rests; k++) {
     const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
@@ -75,8 +76,15 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
       lively = k;
     }
     peak = std::max(peak, size(h.a[k]));
+    if (lively == k || size(h.a[k]) < 0.875 * low) {
+      low = size(h.a[k]);
+      counts = k;
+    }
     out.steps = k + 1;
-    rests = k - lively > (weak ? 0.1 : 3.0) * (lively + 1 - first);
+    double own_time = 0.0;    // in steps
+    for (size_t j = first; j <= k; j++) own_time += size(h.a[j]) / peak;
+    rests = k - counts > 0.75 * own_time && (weak || k - counts > 3 * (lively + 1 - first));
+    rests = rests || (weak && k + 1 - first > 4.0 * own_time);
   }
   // as long as inertia has not been able to make a grain slide, the collision is weak: of that time the largest
   // acceleration stands for all, and the angles of its steps are summed

@@ -1,4 +1,5 @@
-// The full branch of the adhesive contact: check points, inverse and work, worked out by hand from the equations of jkr.h.
+// The full branch of the adhesive contact: check points, inverse and work, worked out by hand from the equations of
+// jkr.h.
 
 #include "jkr.h"
 

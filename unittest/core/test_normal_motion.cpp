@@ -27,8 +27,8 @@ const double FREQUENCY = std::sqrt(1.2 * MODULUS * A0 / MASS);    // of small sw
 // work along the branch to its end, in F_c delta_c, from y = sqrt(a/a0)
 double work_from(double y)
 {
-  const auto w = [](double y) {
-    return 4.0 * ROOT_6 * (0.8 * std::pow(y, 10) - 4.0 / 3.0 * std::pow(y, 7) + std::pow(y, 4) / 3.0);
+  const auto w = [](double s) {
+    return 4.0 * ROOT_6 * (0.8 * std::pow(s, 10) - 4.0 / 3.0 * std::pow(s, 7) + std::pow(s, 4) / 3.0);
   };
   return w(std::pow(6.0, -1.0 / 3.0)) - w(y);
 }

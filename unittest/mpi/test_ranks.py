@@ -139,32 +139,6 @@ def test_restart_keeps_necks_rates_and_displacements(tmp_path, ranks, eta):
     assert_same_motion(swap(tmp_path, ranks, eta=eta, start="restart"), expected)
 
 
-def emit(folder: Path, ranks: int, **variables: str) -> tuple[str, list[str]]:
-    """Final state of carriers and grains, and what the deck says at the end of the run."""
-    last = re.findall(r"^ +9000 .*|^mass .*", mpirun(folder, "in.emit", ranks, **variables), re.M)
-    return (folder / "emit.txt").read_text(), last
-
-
-@pytest.fixture(scope="module")
-def emitted(tmp_path_factory):
-    return emit(tmp_path_factory.mktemp("emitted"), 1)
-
-
-@pytest.mark.parametrize("ranks, newton", [(2, "off"), (4, "off"), (4, "on")])
-def test_emitted_grains_on_any_number_of_ranks(emitted, tmp_path, ranks, newton):
-    """Random orientations, turning carriers, their mass, and the IDs of the new atoms."""
-    assert len(emitted[0].splitlines()) > 500
-    assert emit(tmp_path, ranks, newton=newton) == emitted
-
-
-def test_restart_before_detached_grains_are_emitted(emitted, tmp_path):
-    """In the middle of a window in the middle of the collision: as above, the trajectory changes by 1e-10."""
-    emit(tmp_path, 1, steps="450", save="yes")
-    state, last = emit(tmp_path, 4, start="restart")
-    assert last == emitted[1]
-    assert [line.split()[:2] for line in state.splitlines()] == [line.split()[:2] for line in emitted[0].splitlines()]
-
-
 def test_a_long_collision_crosses_two_borders_at_once(tmp_path):
     """From the first rank to the last of 2 x 2 in one exchange: the rank between must have room to hand it on."""
     found = []

@@ -67,13 +67,13 @@ class Deck {
   }
   void carrier(double x, double y, double z, double vx, double vy, double vz)
   {
-    char line[256];
+    char commands[512];
     const int id = static_cast<int>(lammps_get_natoms(lmp)) + 1;
-    std::snprintf(line, sizeof(line),
+    std::snprintf(commands, sizeof(commands),
                   "create_atoms 1 single %.17g %.17g %.17g\nset atom %d diameter 1.5e-3 density 7700\n"
                   "group new id %d\nvelocity new set %.17g %.17g %.17g\ngroup new delete",
                   x, y, z, id, id, vx, vy, vz);
-    (*this)(line);
+    (*this)(commands);
   }
   void wall_and_motion(double restitution = 0.7)
   {

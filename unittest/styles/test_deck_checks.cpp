@@ -211,7 +211,7 @@ TEST(DeckChecks, FewStepsInAContact)
   c.timestep = 3.17e-6 / 40.0;
   expect_warning(c, {"in contact for 39 steps"});
   // what cannot lose a grain needs no line
-  c.speed = 0.05;
+  c.speed = 0.22;    // 1.2e5 m/s2 for 1.33e5
   c.timestep = 1e-6;
   expect_silence(c, 0.0);
 }
@@ -399,6 +399,16 @@ TEST(DeckChecks, WallsThatDoNotCount)
   c = Case();
   c.after = "group others type 2\nfix w others wall/reflect zlo 0.75e-3";
   expect_silence(c, STIFF);
+  c.after = "";
+  c.before =
+      "group others type 2\nfix floor others wall/gran granular " + steel("2e6", "damping tsuji") + " zplane 0 NULL";
+  expect_silence(c, STIFF);
+  c.words = "stiffen 1.001";
+  c.before =
+      "group others type 2\nfix floor others wall/gran granular jkr 2e6 0 0.3 0.1 tangential mindlin NULL 0 0.05 "
+      "zplane 0 NULL";
+  expect_silence(c, STIFF, 0.001);
+  c.words = c.before = "";
   // what pulls at a carrier all the way
   c.after = "fix g all gravity 9.81 vector 0 0 -1\nfix d all viscous 1e-6";
   expect_silence(c, STIFF);

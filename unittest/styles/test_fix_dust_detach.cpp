@@ -67,7 +67,8 @@ TEST(FixDustDetach, OutputsAgreeWithEachOther)
 
 TEST(FixDustDetach, ContactTimeAndPeakAcceleration)
 {
-  // Hertz without damping: contact time 2.9432 overlap/speed, peak force k overlap^1.5, with overlap = (5 m v^2/(4 k))^0.4
+  // Hertz without damping: contact time 2.9432 overlap/speed, peak force k overlap^1.5, with overlap = (5 m v^2/(4
+  // k))^0.4
   const double v = 3.0, R = 0.75e-3, m = 4.0 / 3.0 * M_PI * R * R * R * 7700.0;
   const double k = 4.0 / 3.0 * 210e9 / (2.0 * (1.0 - 0.09)) * std::sqrt(R),
                overlap = std::pow(1.25 * m * v * v / k, 0.4);

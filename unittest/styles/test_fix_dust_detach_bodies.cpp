@@ -1,5 +1,5 @@
-// fix dust/detach beyond the single carrier on a wall: spin, carriers that collide, softened contacts, beds, and the mass
-// and momentum of what comes off.
+// fix dust/detach beyond the single carrier on a wall: spin, carriers that collide, softened contacts, beds, and the
+// mass and momentum of what comes off.
 
 #include "deck.h"
 
@@ -35,8 +35,8 @@ double size(const Vec &v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * 
 
 }    // namespace
 
-// a spin at which |r| omega^2 exceeds F_c/m throws off the grains around the equator, z = 0, from |r| omega^2 (1 - n_z^2) > c on:
-// the fraction sqrt(1 - c/(|r| omega^2)) of the sphere. 4500 grains scatter by 0.5 %; three times that.
+// a spin at which |r| omega^2 exceeds F_c/m throws off the grains around the equator, z = 0, from |r| omega^2 (1 -
+// n_z^2) > c on: the fraction sqrt(1 - c/(|r| omega^2)) of the sphere. 4500 grains scatter by 0.5 %; three times that.
 TEST(FixDustDetachBodies, SpinAloneThrowsOffTheEquator)
 {
   const double c = 1.330e5, shell = 0.76e-3;
@@ -106,7 +106,8 @@ TEST(FixDustDetachBodies, OrientationFollowsTheSpin)
   EXPECT_GT(lost(true, 0.5), cap_below + 0.2 * 4500);
 }
 
-// each of two equal carriers that meet head-on moves as on a rigid wall: that has E* of one elastic side alone, twice theirs
+// each of two equal carriers that meet head-on moves as on a rigid wall: that has E* of one elastic side alone, twice
+// theirs
 TEST(FixDustDetachBodies, HeadOnCollisionIsTheImpactOnARigidWall)
 {
   for (double v : {2.0, 8.0, 12.0})
@@ -191,7 +192,8 @@ TEST(FixDustDetachBodies, TurningEverythingChangesNothing)
   }
 }
 
-// E/S with stiffen S gives the stiff impact, straight and oblique. The time step is larger, too, as a user would have it.
+// E/S with stiffen S gives the stiff impact, straight and oblique. The time step is larger, too, as a user would have
+// it.
 TEST(FixDustDetachBodies, StiffenUndoesSoftContacts)
 {
   struct Case {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <utility>
 
 using namespace LAMMPS_NS;
 
@@ -106,8 +107,8 @@ double detached(const Deck &deck)
 
 }    // namespace
 
-// mass yes: what the carriers weigh and what has come off is the mass at first, in every step; a grain takes its momentum
-// with it, with the velocity of its row
+// mass yes: what the carriers weigh and what has come off is the mass at first, in every step; a grain takes its
+// momentum with it, with the velocity of its row
 TEST(FixDustDetachShedding, MassAndMomentumLeaveInTheStepOfTheGrain)
 {
   for (const char *tangential : {"estimate", "integrate"}) {
@@ -138,7 +139,8 @@ TEST(FixDustDetachShedding, MassAndMomentumLeaveInTheStepOfTheGrain)
 }
 
 // a carrier that has lost some goes on as one of that mass: so nothing depends on the output window. What is not in the
-// restitution of 0.7 is the grains that leave where the carrier turns: they have given their momentum to the wall before.
+// restitution of 0.7 is the grains that leave where the carrier turns: they have given their momentum to the wall
+// before.
 TEST(FixDustDetachShedding, TheOutputWindowDoesNotMatter)
 {
   const auto rebound = [](const std::string &options) {
@@ -162,8 +164,8 @@ TEST(FixDustDetachShedding, TheOutputWindowDoesNotMatter)
   EXPECT_NEAR(rebound("mass no"), 0.7, 1e-4);
 }
 
-// the velocity of a row is the carrier's at the end of the step, not that of its half; also for a grain that is thrown off
-// at the very start of a run, where LAMMPS has no half step
+// the velocity of a row is the carrier's at the end of the step, not that of its half; also for a grain that is thrown
+// off at the very start of a run, where LAMMPS has no half step
 TEST(FixDustDetachShedding, RowsHaveTheVelocityAtTheEndOfTheStep)
 {
   for (const char *mass : {"no", "yes"}) {
@@ -276,8 +278,8 @@ std::vector<Vec> places_of_grains(const Deck &deck, double time)
 
 }    // namespace
 
-// grains are made where free flight from the place and the step of their rows has brought them, whenever that is: during
-// the run or at its end, with the time step of then or not
+// grains are made where free flight from the place and the step of their rows has brought them, whenever that is:
+// during the run or at its end, with the time step of then or not
 TEST(FixDustDetachShedding, AGrainIsMadeWhereItHasFlown)
 {
   Deck deck;
@@ -301,8 +303,8 @@ TEST(FixDustDetachShedding, AGrainIsMadeWhereItHasFlown)
   EXPECT_EQ(speeds, velocities);
 }
 
-// no rebuild of neighbour lists is needed for the time that a grain waits: made at once or late, it is in the same place,
-// unless it meets another one there
+// no rebuild of neighbour lists is needed for the time that a grain waits: made at once or late, it is in the same
+// place, unless it meets another one there
 TEST(FixDustDetachShedding, TheMomentAtWhichAGrainIsMadeDoesNotMatter)
 {
   const auto run = [](const std::string &commands) {
@@ -384,7 +386,8 @@ TEST(FixDustDetachShedding, MassesStayWithTheirCarriersWhenIDsChange)
 
 namespace {
 
-// LAMMPS computes damping forces with other velocities where a run starts: so two runs are the same to nanometres and um/s
+// LAMMPS computes damping forces with other velocities where a run starts: so two runs are the same to nanometres and
+// um/s
 void expect_same_atoms(const std::map<tagint, Atom> &a, const std::map<tagint, Atom> &b, double period = 1.0)
 {
   ASSERT_EQ(a.size(), b.size());
@@ -506,8 +509,8 @@ TEST(FixDustDetachShedding, RunsInPieces)
                     run("run 2000 post no\nrun 2000 post no\nrun 1000 post no"), 0.004);
 }
 
-// two carriers that meet: grains between them find no room, and what is made overlaps nothing. Nothing depends on where the
-// box has its borders, nor on whether each carrier has a fix of its own.
+// two carriers that meet: grains between them find no room, and what is made overlaps nothing. Nothing depends on where
+// the box has its borders, nor on whether each carrier has a fix of its own.
 TEST(FixDustDetachShedding, RoomDoesNotDependOnBordersNorFixes)
 {
   const auto run = [](double shift, bool two_fixes) {

@@ -16,7 +16,7 @@ const double HAMAKER = std::sqrt(10.1e-20 * 21.2e-20);
 // a grain on a wall: what the model must know of it, from the core's equations
 struct Grain {
   double radius, z0, modulus, gamma, fc, a0, delta_c, delta_0, mass;
-  Grain(double radius, double z0, double young = 1.1053e11) : radius(radius), z0(z0)
+  Grain(double _radius, double _z0, double young = 1.1053e11) : radius(_radius), z0(_z0)
   {
     modulus = Dust::combined_modulus(young, 0.3, young, 0.3);
     gamma = Dust::surface_energy(HAMAKER, z0);
@@ -129,7 +129,9 @@ TEST(JkrVdw, BounceLosesTheWorkOfThePhysicsPage)
         }
         ASSERT_EQ(left, factor > 1.0) << radius << " " << z0 << " " << factor;
         // 1 % in speed; where the rest is small against the loss that means its square
-        if (left) EXPECT_NEAR(deck.atom("v", 1)[2], sticking * std::sqrt(factor * factor - 1.0), 0.01 * speed);
+        if (left) {
+          EXPECT_NEAR(deck.atom("v", 1)[2], sticking * std::sqrt(factor * factor - 1.0), 0.01 * speed);
+        }
       }
     }
 }
@@ -167,7 +169,8 @@ TEST(JkrVdw, EnergyIsConservedWhereNothingDissipates)
 
 TEST(JkrVdw, DampingRatioAtTheEquilibrium)
 {
-  // eta = 2 zeta sqrt(k0/m)/a0 with stock viscoelastic: free oscillation decays by exp(-2 pi zeta/sqrt(1 - zeta^2)) a period
+  // eta = 2 zeta sqrt(k0/m)/a0 with stock viscoelastic: free oscillation decays by exp(-2 pi zeta/sqrt(1 - zeta^2)) a
+  // period
   const Grain g(10e-6, 0.4e-9);
   const double zeta = 0.1, k0 = 1.2 * g.modulus * g.a0, omega = std::sqrt(k0 / g.mass);
   EXPECT_NEAR(k0 / g.mass, 1.2 * g.modulus * g.a0 / g.mass, 1.0);

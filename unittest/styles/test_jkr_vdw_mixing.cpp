@@ -1,4 +1,5 @@
-// Normal model jkr/vdw between pairs: mixed coefficients, the range of the attraction and the neighbour skin that it needs.
+// Normal model jkr/vdw between pairs: mixed coefficients, the range of the attraction and the neighbour skin that it
+// needs.
 
 #include "deck.h"
 

@@ -32,7 +32,7 @@ const std::vector<std::pair<double, double>> SIZES = {{CARRIER, 10e-6}, {10e-6, 
 // two spheres: JKR branch over x = a/a0 (Chokshi et al. 1993) with gamma = A/(18 pi z0^2)
 struct Contact {
   double r1, r2, r, modulus, gamma, fc, a0, delta_c, delta_0;
-  Contact(double r1, double r2) : r1(r1), r2(r2), r(r1 * r2 / (r1 + r2))
+  Contact(double _r1, double _r2) : r1(_r1), r2(_r2), r(r1 * r2 / (r1 + r2))
   {
     modulus = YOUNG / (2.0 * (1.0 - NU * NU));
     gamma = HAMAKER / (18.0 * M_PI * Z0 * Z0);
@@ -378,7 +378,8 @@ TEST(JkrVdwPairs, RollingDisplacementTurnsWithTheContact)
 
 TEST(JkrVdwPairs, EnergyOfAThousandNormalOscillations)
 {
-  // swings into the stretched neck: 0.8 of the work from delta_0 to -delta_c; Verlet's error is below (omega dt)^2/8 = 3e-5
+  // swings into the stretched neck: 0.8 of the work from delta_0 to -delta_c; Verlet's error is below (omega dt)^2/8 =
+  // 3e-5
   const Contact c(10e-6, 5e-6);
   const double swing = 0.8 * 1.5426 * c.fc * c.delta_c;
   Deck deck;
@@ -557,7 +558,8 @@ TEST(JkrVdwPairs, TrajectoryDoesNotDependOnNewtonOrderOrPlace)
   for (bool newton : {false, true})
     for (const Vec &shift : {Vec{}, corner})
       for (const auto &[reversed, resorted] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
-        // the same but for round-off; a position's, 5e-19 m, is 1e-12 in the rate of an overlap, and of a shift it grows to 1e-8
+        // the same but for round-off; a position's, 5e-19 m, is 1e-12 in the rate of an overlap, and of a shift it
+        // grows to 1e-8
         EXPECT_LT(difference(end, evolve(start, {newton, reversed, resorted, shift, 2e-9, ""}, 10e-6)),
                   shift[0] > 0.0 ? 1e-6 : 1e-11)
             << newton << reversed << resorted << shift[0];
@@ -611,9 +613,9 @@ void set_off(Deck &deck, const Contact &c, double along, double away, double zet
 
 TEST(JkrVdwPairs, LeavesAHeldCarrierWhereThePullOffForceHoldsItNoLonger)
 {
-  // a grain that glides round the carrier needs m w^2/(r1 + r2) > F_c, whatever the time step and the damping; one that rings
-  // leaves earlier, as the load is there at once: speeds from an integration of the branch in the fourth order, 9.2869 and
-  // 10.0089 m/s
+  // a grain that glides round the carrier needs m w^2/(r1 + r2) > F_c, whatever the time step and the damping; one that
+  // rings leaves earlier, as the load is there at once: speeds from an integration of the branch in the fourth order,
+  // 9.2869 and 10.0089 m/s
   const Contact c(CARRIER, 10e-6);
   const double held = std::sqrt(c.fc * (c.r1 + c.r2) / c.mass(2));
   EXPECT_NEAR(held, 10.0539, 1e-4);
@@ -651,7 +653,8 @@ TEST(JkrVdwPairs, DampingIsOfSecondOrderInTheTimeStep)
 
 TEST(JkrVdwPairs, SlidingAndRollingAreOfSecondOrderInTheTimeStep)
 {
-  // a smooth push across the carrier and onto it, as on its north in an impact: a grain rolls, and slides if it is strong
+  // a smooth push across the carrier and onto it, as on its north in an impact: a grain rolls, and slides if it is
+  // strong
   const Contact c(CARRIER, 10e-6);
   for (double across : {2.0, 20.0}) {
     std::vector<std::pair<Vec, Vec>> ends;

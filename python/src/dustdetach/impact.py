@@ -173,8 +173,8 @@ class Impact:
         if surface_energy > LARGEST_SURFACE_ENERGY:
             least = math.sqrt(self.hamaker / (18 * math.pi * LARGEST_SURFACE_ENERGY))
             raise InvalidInput(
-                f"--z0: {self.z0:g} m makes a surface energy of {surface_energy:.3g} J/m2; allowed: {least:.3g} to 1e-07 "
-                "m for this Hamaker constant"
+                f"--z0: {self.z0:g} m makes a surface energy of {surface_energy:.3g} J/m2; allowed: {least:.3g} to "
+                "1e-07 m for this Hamaker constant"
             )
         effective = 1 / (2 / self.grain_diameter + 2 / self.carrier_diameter)
         mass = math.pi / 6 * self.grain_diameter**3 * GRAIN_DENSITY
