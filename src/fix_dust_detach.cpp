@@ -140,8 +140,6 @@ void FixDustDetach::setup(int /*vflag*/)
   if (settings.lose_mass) tell_ghosts();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixDustDetach::setup_post_neighbor() { post_neighbor(); }
 
 /* ----------------------------------------------------------------------
@@ -276,17 +274,23 @@ Dust::Motion FixDustDetach::motion_of(int i) const
   Dust::Motion motion = {};
   const double per_mass = settings.stiffen_acceleration / atom->rmass[i];
   for (int d = 0; d < 3; d++) motion.acceleration[d] = atom->f[i][d] * per_mass;
-  if (!settings.rotation) return motion;
+  if (!settings.rotation) return check_finite(i, motion);
   constexpr double INERTIA = 0.4;    // of a sphere, as in fix nve/sphere
   const double per_inertia = per_mass / (INERTIA * atom->radius[i] * atom->radius[i]);
   for (int d = 0; d < 3; d++) {
     motion.angular_acceleration[d] = atom->torque[i][d] * per_inertia;
     motion.spin[d] = atom->omega[i][d];
   }
-  return motion;
+  return check_finite(i, motion);
 }
 
-/* ---------------------------------------------------------------------- */
+const Dust::Motion &FixDustDetach::check_finite(int i, const Dust::Motion &motion) const
+{
+  if (!motion.is_finite())
+    error->one(FLERR, "Fix dust/detach {}: force, torque or spin of carrier {} is not finite at step {}", id,
+               atom->tag[i], update->ntimestep);
+  return motion;
+}
 
 void FixDustDetach::collide(int i)
 {
@@ -312,8 +316,6 @@ DeckChecks::Course FixDustDetach::course_of(const Dust::Collision &collision) co
   return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold()};
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
   checks.check_size(i, coat.radius);
@@ -321,8 +323,6 @@ void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
   collisions[carriers.state[i]].begin(carriers.standing(i), motion.spin);
   make_exchange_room(i);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixDustDetach::finish_collision(int i, int next)
 {
@@ -380,11 +380,15 @@ void FixDustDetach::record(int i)
     const int number = coat.table->grain(d.bit);
     const Dust::Grain &grain = coat.texture.grains[number];
     const double distance = coat.radius + grain.radius, *n = d.direction, *w = d.velocity;
-    const double place[3] = {x[0] + distance * n[0], x[1] + distance * n[1], x[2] + distance * n[2]};
-    const double speed[3] = {velocity[0] + w[0], velocity[1] + w[1], velocity[2] + w[2]};
+    const double before = d.before_end / settings.stiffen_time;    // when it left, and there the carrier was
+    double place[3], speed[3];
+    for (int k = 0; k < 3; k++) {
+      place[k] = x[k] - before * velocity[k] + d.carrier_place[k] / settings.stiffen_time + distance * n[k];
+      speed[k] = velocity[k] + d.carrier_velocity[k] + w[k];
+    }
     if (settings.keep_rows)
-      rows.add({double(update->ntimestep), double(atom->tag[i]), number + 1.0, d.mode + 1.0, 2.0 * grain.radius,
-                place[0], place[1], place[2], speed[0], speed[1], speed[2]});
+      rows.add({double(update->ntimestep) - std::round(before / update->dt), double(atom->tag[i]), number + 1.0,
+                d.mode + 1.0, 2.0 * grain.radius, place[0], place[1], place[2], speed[0], speed[1], speed[2]});
     if (!settings.lose_mass) continue;
     const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
     lost_mass += mass;
@@ -393,7 +397,7 @@ void FixDustDetach::record(int i)
       shedding.wait(i, {number + 1.0,
                         mass,
                         grain.radius,
-                        shedding.now(),
+                        shedding.now() - before,
                         {place[0], place[1], place[2]},
                         {speed[0], speed[1], speed[2]},
                         {spin[0], spin[1], spin[2]}});
@@ -406,8 +410,6 @@ void FixDustDetach::record(int i)
   collisions.work.detached.clear();
   rows.open();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixDustDetach::close_window()
 {
@@ -435,15 +437,11 @@ template <typename Question> double FixDustDetach::sum_under_way(Question questi
   return sum;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixDustDetach::compute_scalar()
 {
   const DetachTotals t = mine.sum(world);
   return t.initial > 0.0 ? t.weight / t.initial : 0.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixDustDetach::compute_vector(int n)
 {
@@ -481,8 +479,6 @@ double FixDustDetach::attached_grains() const
   MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   return sum;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixDustDetach::memory_usage()
 {

@@ -81,6 +81,7 @@ class FixDustDetach : public Fix {
   // collisions under way on this rank
   Dust::CollisionPool collisions;
   Dust::Motion motion_of(int) const;
+  const Dust::Motion &check_finite(int, const Dust::Motion &) const;
   void collide(int);
   void begin_collision(int, const Dust::Motion &);
   void finish_collision(int, int);

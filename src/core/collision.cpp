@@ -6,6 +6,7 @@
 
 #include "geometry.h"
 #include "patch_bits.h"
+#include "retrospect.h"
 
 #include <algorithm>
 #include <cmath>
@@ -189,7 +190,7 @@ void Collision::lose(const GrainTable &table, const Loss &loss, const Motion &mo
     for (Mode met : {SLIDING, ROLLING})
       strong->state.count[met] += excess(table, met, loss.bit, load) > 0.0 || has_met(met, table, loss.bit);
   }
-  work.detached.push_back({loss.bit, loss.mode, {}, {}});
+  work.detached.push_back({loss.bit, loss.mode, {}, {}, 0.0, {}, {}});
   if (!work.locate) return;
   Detachment &detached = work.detached.back();
   double velocity[3];
@@ -208,10 +209,25 @@ void Collision::let_go(const GrainTable &table, const Release &release, uint64_t
   detach(release.bit, attached);
   if (table.criteria().count)
     for (Mode met : {SLIDING, ROLLING}) strong->state.count[met] += has_met(met, table, release.bit);
-  work.detached.push_back({release.bit, TANGENTIAL, {}, {}});
+  work.detached.push_back({release.bit, TANGENTIAL, {}, {}, release.before_end, {}, {}});
   if (!work.locate) return;
   course.frame.to_space(release.direction, work.detached.back().direction);
   course.frame.to_space(release.velocity, work.detached.back().velocity);
+  course.frame.to_space(release.carrier_velocity, work.detached.back().carrier_velocity);
+  course.frame.to_space(release.carrier_place, work.detached.back().carrier_place);
+}
+
+// where the carrier was when grains left, by the record; the impulses are along the axes of the frame by now
+void Collision::locate_in_past(std::vector<Detachment> &detached, size_t first) const
+{
+  const Retrospect carrier(*impulses);
+  for (size_t k = first; k < detached.size(); k++) {
+    Detachment &d = detached[k];
+    if (d.before_end <= 0.0) continue;
+    carrier.at(d.before_end, d.carrier_velocity, d.carrier_place);
+    course.frame.to_space(d.carrier_velocity, d.carrier_velocity);
+    course.frame.to_space(d.carrier_place, d.carrier_place);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -270,7 +286,9 @@ bool Collision::end(const GrainTable &table, const double *spin, uint64_t *attac
   past.history = &strong->history;
   work.released.clear();
   law->releases(table, past, attached, work.locate, work.released);
+  const size_t first = work.detached.size();
   for (const Release &release : work.released) let_go(table, release, attached, work);
+  if (work.locate && impulses) locate_in_past(work.detached, first);
   return !work.released.empty();
 }
 

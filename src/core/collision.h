@@ -28,6 +28,11 @@ struct Detachment {
   Mode mode;
   double direction[3];    //!< n, in space
   double velocity[3];     //!< relative to the carrier's centre, in space
+  /*! So long before the present call: 0 but for laws that tell when a grain left during the collision. With the
+   *  carrier's velocity v and place x at the end of the collision they were v + carrier_velocity and
+   *  x - before_end v + carrier_place then, as far as contact forces moved it (retrospect.h) */
+  double before_end;
+  double carrier_velocity[3], carrier_place[3];
 };
 
 /*! What is kept of a collision from when inertia could make a grain slide */
@@ -85,7 +90,7 @@ class alignas(64) Collision {
   void begin(const Quaternion &orientation, const double *spin);
 
   /*! One time step: Eq. 2 and lift-off normal
-   *  \param motion    its spin is that of the middle of the step that ends now, as a leapfrog has it
+   *  \param motion    must be finite; its spin is that of the middle of the step that ends now, as a leapfrog has it
    *  \param attached  bits of the grains; those that leave are cleared
    *  \param work      the grains that leave are appended to its list
    *  \return          true if any left */
@@ -152,6 +157,7 @@ class alignas(64) Collision {
   PastCollision past_at(const double *spin) const;
   void lose(const GrainTable &table, const Loss &loss, const Motion &motion, uint64_t *attached, Workspace &work);
   void let_go(const GrainTable &table, const Release &release, uint64_t *attached, Workspace &work);
+  void locate_in_past(std::vector<Detachment> &detached, size_t first) const;
   Motion weak_peak() const;    // the largest of the weak time, along the carrier's axes
   bool has_met(Mode mode, const GrainTable &table, int bit) const;
 };

@@ -89,7 +89,8 @@ class GrainTable {
   bool might_move(double force2, double torque2, double spin2, double inertia) const
   {
     // (x + y + z)^2 <= 3 (x^2 + y^2 + z^2); alpha = torque/(2/5 m R_p^2)
-    return force2 + inv_arm2 * torque2 > (still2 - shell_max * shell_max * spin2 * spin2) * inertia * inertia;
+    // true if any of it is not a number, so that somebody looks at it
+    return !(force2 + inv_arm2 * torque2 <= (still2 - shell_max * shell_max * spin2 * spin2) * inertia * inertia);
   }
   /*! Whether a carrier that nothing touches spins fast enough to throw off a grain */
   bool may_spin_off(double spin2) const { return shell_max * spin2 > hold_min; }

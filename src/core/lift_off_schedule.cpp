@@ -121,5 +121,6 @@ double LiftOffSchedule::wait(double missing, double u) const
 
 int LiftOffSchedule::tick_of(double time) const
 {
-  return static_cast<int>(std::clamp(time / horizon * TICKS, 0.0, TICKS - 1.0));
+  // in this order also of what is not a number
+  return static_cast<int>(std::max(0.0, std::min(TICKS - 1.0, time / horizon * TICKS)));
 }

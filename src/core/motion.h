@@ -39,6 +39,13 @@ struct Motion {
     return m;
   }
 
+  /*! Whether all of it is finite, squares included: nothing else may ask about a motion that is not */
+  bool is_finite() const
+  {
+    return std::isfinite(dot(acceleration, acceleration) + dot(angular_acceleration, angular_acceleration) +
+                         dot(spin, spin));
+  }
+
   bool rotates() const { return dot(angular_acceleration, angular_acceleration) > 0.0 || dot(spin, spin) > 0.0; }
 
   /*! |alpha| + omega^2: times |r|, at least what rotation adds to g */

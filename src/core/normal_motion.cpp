@@ -17,6 +17,7 @@ namespace {
 
 constexpr double STIFFNESS = 1.8 / ROOT_6;    // k0 delta_c/F_c: 12/(20/3 6^(1/3)), the slope of the branch at y = 1
 constexpr double STEP = 0.3;                  // times the frequency: a period in 21 steps
+constexpr double MAX_STEPS = 1.0e4;           // at once: beyond any load that a material stands
 
 double overlap_of(double y) { return ROOT_6 * (2.0 * y * y * y - 4.0 / 3.0) * y; }
 double slope_of(double y) { return 1.0 / (ROOT_6 * (8.0 * y * y * y - 4.0 / 3.0)); }
@@ -65,7 +66,8 @@ void NormalMotion::advance(const double *load, double dt)
     const double max_y = std::max({y[i], quiet_y(load[i]), quiet_y(G[i])});
     max_rate2 = std::max(max_rate2, here[i] * rate[i] * rate[i] * (3.0 / ROOT_6 * max_y * max_y + 0.5));
   }
-  advance(load, dt, 1 + static_cast<int>(dt * std::sqrt(max_rate2) / STEP));
+  // in this order also of what is not a number
+  advance(load, dt, 1 + static_cast<int>(std::min(MAX_STEPS, dt * std::sqrt(max_rate2) / STEP)));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -87,7 +87,7 @@ void releases(const GrainTable &table, const PastCollision &past, const uint64_t
       const Slip slip(site, past, dvn);
       double part = 0.0;
       if (!estimate.leaves(site, slip, part)) return;
-      Release release = {bit, {site.n[0], site.n[1], site.n[2]}, {}};
+      Release release = {bit, {site.n[0], site.n[1], site.n[2]}, {}, 0.0};
       for (int d = 0; d < 3; d++) release.velocity[d] = part * slip.s[d] + slip.surface[d];
       released.push_back(release);
     });

@@ -173,7 +173,14 @@ class Impulse {
     const double inv_size = 1.0 / std::sqrt(dot(n, n));
     for (int d = 0; d < 3; d++) n[d] *= inv_size;
     const double along = dot(w, n), left = w2 - along * along, longer = left > 0.0 ? std::sqrt(w2 / left) : 0.0;
-    for (int d = 0; d < 3; d++) w[d] = longer * (w[d] - along * n[d]);
+    // what is left of Dv then, and of the way
+    const double time = past.duration * (1.0 - phase.time), way_left = time - past.duration * (0.5 - phase.way);
+    release.before_end = time;
+    for (int d = 0; d < 3; d++) {
+      w[d] = longer * (w[d] - along * n[d]);
+      release.carrier_velocity[d] = (1.0 - phase.velocity) * past.dv[d];
+      release.carrier_place[d] = -way_left * past.dv[d];
+    }
     return true;
   }
 };

@@ -40,6 +40,7 @@ bool may_release(const GrainTable &table, const PastCollision &past)
 
 struct Substep {
   double dt, acceleration[3];    // mean
+  double before_end;             // of the collision, in the middle
   double acceleration_after[3], spin_after[3];
 };
 
@@ -72,6 +73,11 @@ std::vector<Substep> substeps(const PastCollision &past)
     std::copy_n(found.back().acceleration_after, 3, force0);
     std::copy_n(found.back().spin_after, 3, spin0);
   }
+  double rest = 0.0;
+  for (auto step = found.rbegin(); step != found.rend(); ++step) {
+    step->before_end = rest + 0.5 * step->dt;
+    rest += step->dt;
+  }
   return found;
 }
 
@@ -92,7 +98,8 @@ class Follower {
     const GrainTable::Site &site = table.site(bit);
     const double rp = table.carrier_radius(), radius = site.shell - rp;
     const int lane = motion.grains();
-    bits[lane] = bit;
+    releases[lane] = {bit, {}, {}, 0.0};
+    attached[lane] = true;
     motion.add(site.n, site.hold, radius, rp, past.spin_before);
     if (rings) {
       constexpr double NONE[3] = {0.0, 0.0, 0.0};
@@ -105,20 +112,17 @@ class Follower {
   // those that are still to be followed
   void run()
   {
-    for (const Substep &step : steps) advance(step.acceleration, step.acceleration_after, step.spin_after, step.dt);
+    for (const Substep &step : steps) {
+      advance(step.acceleration, step.acceleration_after, step.spin_after, step.dt);
+      note_releases(step.before_end);
+    }
+    note_motion();    // those that leave later do so with what they have at the end
     if (rings)
       ring_out();
     else
       motion.release();
-    for (int k = 0; k < motion.grains(); k++) {
-      if (motion.attached(k)) continue;
-      Release release = {bits[k], {}, {}};
-      for (int d = 0; d < 3; d++) {
-        release.direction[d] = motion.direction(k, d);
-        release.velocity[d] = motion.velocity(k, d);
-      }
-      released.push_back(release);
-    }
+    for (int k = 0; k < motion.grains(); k++)
+      if (!motion.attached(k)) released.push_back(releases[k]);
     motion.clear();
     ringing.clear();
   }
@@ -131,15 +135,17 @@ class Follower {
   const bool rings;
   SurfaceMotion motion;
   NormalMotion ringing;
+  Release releases[SurfaceMotion::LANES];
+  bool attached[SurfaceMotion::LANES];
   double load[SurfaceMotion::LANES];    // F_n/F_c, if they ring
-  int bits[SurfaceMotion::LANES];
 
   // a grain that rings leaves where its contact breaks, not before
   void advance(const double *acceleration, const double *after, const double *spin, double dt)
   {
     motion.advance(acceleration, spin, dt);
     if (!rings) return;
-    for (int k = 0; k < motion.grains(); k++) load[k] = motion.outward_force(k, after) / table.site(bits[k]).hold;
+    for (int k = 0; k < motion.grains(); k++)
+      load[k] = motion.outward_force(k, after) / table.site(releases[k].bit).hold;
     ringing.advance(load, dt);
     for (int k = 0; k < motion.grains(); k++)
       if (motion.attached(k) && !ringing.attached(k)) motion.let_go(k);
@@ -161,6 +167,30 @@ class Follower {
     return false;
   }
   static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
+
+  // those that have just left, as they do
+  void note_releases(double before_end)
+  {
+    for (int k = 0; k < motion.grains(); k++) {
+      if (!attached[k] || motion.attached(k)) continue;
+      attached[k] = false;
+      releases[k].before_end = before_end;
+      note_motion(k);
+    }
+  }
+  // all others
+  void note_motion()
+  {
+    for (int k = 0; k < motion.grains(); k++)
+      if (attached[k]) note_motion(k);
+  }
+  void note_motion(int k)
+  {
+    for (int d = 0; d < 3; d++) {
+      releases[k].direction[d] = motion.direction(k, d);
+      releases[k].velocity[d] = motion.velocity(k, d);
+    }
+  }
 };
 
 /* ---------------------------------------------------------------------- */

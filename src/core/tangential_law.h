@@ -31,6 +31,9 @@ struct Release {
   int bit;
   double direction[3];    //!< n, along the same axes
   double velocity[3];     //!< relative to the carrier's centre
+  double before_end;      //!< when it left: so long before the end of the collision
+  //! how the carrier moved until then, u and r of retrospect.h, if no record of the collision tells
+  double carrier_velocity[3] = {0.0, 0.0, 0.0}, carrier_place[3] = {0.0, 0.0, 0.0};
 };
 
 /*! A law of tangential lift-off: which grains leave, asked once at the end of a collision.

@@ -1,5 +1,4 @@
-// The full branch of the adhesive contact: check points, inverse and work, worked out by hand from the equations of
-// jkr.h.
+// The full branch of the adhesive contact: check points, inverse and work, by hand from the equations of jkr.h.
 
 #include "jkr.h"
 

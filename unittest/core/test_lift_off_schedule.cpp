@@ -62,3 +62,18 @@ TEST(LiftOffSchedule, FindsEachGrainInTheStepInWhichItLiftsOff)
   }
   EXPECT_GT(found, 30000);
 }
+
+TEST(LiftOffSchedule, WhatIsNotANumberIsNoIndex)
+{
+  const GrainTable table(place_monolayer(RP, RD, 0.2, BareCap(), 1), CALCITE, Criteria());
+  for (double wrong : {double(NAN), double(INFINITY), 1.0e200}) {
+    LiftOffSchedule schedule;
+    std::vector<Loss> losses;
+    schedule.clear();
+    for (double size : {0.5, 0.6, 0.7, wrong, wrong, 0.7, 0.8}) {
+      const Motion motion = {{0.0, 0.0, size < 1.0 ? size * HOLD : size}, {}, {}};
+      schedule.look(table, motion, table.all_attached().data(), losses);
+    }
+    EXPECT_LE(losses.size(), 7u * table.grains());
+  }
+}

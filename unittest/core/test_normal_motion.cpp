@@ -27,8 +27,8 @@ const double FREQUENCY = std::sqrt(1.2 * MODULUS * A0 / MASS);    // of small sw
 // work along the branch to its end, in F_c delta_c, from y = sqrt(a/a0)
 double work_from(double y)
 {
-  const auto w = [](double s) {
-    return 4.0 * ROOT_6 * (0.8 * std::pow(s, 10) - 4.0 / 3.0 * std::pow(s, 7) + std::pow(s, 4) / 3.0);
+  const auto w = [](double x) {
+    return 4.0 * ROOT_6 * (0.8 * std::pow(x, 10) - 4.0 / 3.0 * std::pow(x, 7) + std::pow(x, 4) / 3.0);
   };
   return w(std::pow(6.0, -1.0 / 3.0)) - w(y);
 }
@@ -217,4 +217,15 @@ TEST(NormalMotion, OvershootTellsWhichGrowingLoadsBreakTheContact)
   // damped well enough, the contact follows its load
   EXPECT_EQ(overshoot(0.7), 0.0);
   EXPECT_EQ(overshoot(1.0), 0.0);
+}
+
+TEST(NormalMotion, WhatIsNotANumberTakesNoEndlessSteps)
+{
+  for (double wrong : {double(NAN), double(INFINITY), -double(INFINITY), -1.0e300, -1.0e30}) {
+    Alone grain(0.2);
+    grain.advance(wrong, 1.0e-6);
+    grain.set(0.0);
+    ring_out(grain.motion);
+    EXPECT_EQ(grain.motion.grains(), 1);
+  }
 }
