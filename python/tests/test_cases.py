@@ -55,6 +55,14 @@ def test_both_hemispheres_release_at_12_and_60_degrees(figures_table):
     assert figures_table[12, 60, 0.7].south >= 0.05
 
 
+def test_a_resolved_run_stands_for_all_laws():
+    cases = [Impact(speed=speed, tangential=law) for speed in (4, 8) for law in ("impulse", "estimate")]
+    both = with_methods(cases, "both")
+    assert [case.method for case in both] == ["functions"] * 4 + ["resolved"] * 2
+    assert both[:4] == cases
+    assert [case.speed for case in both[4:]] == [4, 8]
+
+
 def test_toml_makes_every_combination(tmp_path):
     path = tmp_path / "sweep.toml"
     path.write_text("speed = [2, 4.5]\nrestitution = [0.5, 0.7]\nseed = 3\n")

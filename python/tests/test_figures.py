@@ -64,6 +64,22 @@ def test_resolved_rows_alone_are_open_markers_one_a_seed(figures_folder, tmp_pat
     assert text.count(f"fill: #ffffff; stroke: {COLOURS[0].lower()}") == 3 * 6 + 1
 
 
+@pytest.mark.filterwarnings("error")
+def test_laws_of_a_curve_share_its_colour(figures_folder, tmp_path):
+    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    rows = [replace(row, tangential=law) for row in rows for law in ("impulse", "estimate")]
+    points = [resolved(row) for row in rows if row.tangential == "impulse" and row.speed == 8]
+    with plt.rc_context({"svg.fonttype": "none"}):
+        draw([*rows, *points], tmp_path / "laws")
+    text = (tmp_path / "laws.svg").read_text()
+    for words in (">impulse<", ">estimate<", ">dust-resolved<"):
+        assert text.count(words) == 1
+    assert ">functions<" not in text
+    # a dashed line in each panel and colour, and the legend's
+    assert text.count("stroke-dasharray") >= 3 * 3 + 1
+    assert COLOURS[3].lower() not in text
+
+
 def test_the_same_table_makes_the_same_file(figures_folder, tmp_path):
     rows = read_csv(figures_folder / "results.csv")
     draw(rows, tmp_path / "a")

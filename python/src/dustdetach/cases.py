@@ -53,6 +53,8 @@ def named_or_file(name: str) -> list[Impact]:
 def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
     """The cases by another method, or by ``both`` (first all by functions, in seconds); as they are for ``None``.
 
+    A resolved run stands for all laws of tangential lift-off.
+
     Raises:
         InvalidInput: no such method, or a case that the method does not take.
     """
@@ -61,7 +63,12 @@ def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
     if method not in (*METHODS, "both"):
         raise InvalidInput(f"--method: unknown choice {shown(method)}; allowed: {', '.join(METHODS)}, both")
     chosen = METHODS if method == "both" else (method,)
-    return list(dict.fromkeys(replace(case, method=name) for name in chosen for case in cases))
+    return list(dict.fromkeys(_by(name, case) for name in chosen for case in cases))
+
+
+def _by(method: str, case: Impact) -> Impact:
+    law = Impact.tangential if method == "resolved" else case.tangential
+    return replace(case, method=method, tangential=law)
 
 
 def read_cases(path: str | Path) -> list[Impact]:
