@@ -49,24 +49,76 @@ class Impulse {
       table(grains), past(collision), speed(std::sqrt(dot(past.dv, past.dv))),
       max_spin2(std::max(dot(past.spin_before, past.spin_before), dot(past.spin_after, past.spin_after))),
       amplitude(std::min(0.5 * PI / past.duration, past.peak / speed)), rings(past.impulses ? table.overshoot() : 0.0),
-      way(max_spin2 > 0.0 ? 1.0 : 0.5), drift(max_spin2 > 0.0 ? 0.92 : 0.2916)
+      drift(speed * (max_spin2 > 0.0 ? 0.92 : 0.2916)), reach(speed * past.duration * (max_spin2 > 0.0 ? 1.0 : 0.5))
   {
   }
 
-  // false only if no grain leaves, or none of a patch
-  bool may_release() const { return may_release(speed, speed, table.min_hold()); }
-  bool may_release(const GrainTable::Patch &patch) const
+  // false only if no grain leaves
+  bool may_release() const { return may_release(speed, fastest_of(speed), table.min_hold()); }
+
+  // appends those of a patch that leave
+  void releases(int word, uint64_t attached, bool located, std::vector<Release> &released) const
   {
+    const GrainTable::Patch &patch = table.patch(word);
     const double dvn = dot(past.dv, patch.centre), change = speed * patch.radius;
     const double min_dvn = std::max(0.0, std::fabs(dvn) - change);
-    return may_release(dvn + change, std::sqrt(std::max(0.0, speed * speed - min_dvn * min_dvn)), patch.min_hold);
+    const double fastest = fastest_of(std::sqrt(std::max(0.0, speed * speed - min_dvn * min_dvn)));
+    if (!may_release(dvn + change, fastest, patch.min_hold)) return;
+    each_bit(attached, [&](int k) {
+      const int bit = word * PATCH + k;
+      const GrainTable::Site &site = table.site(bit);
+      Slide slide;
+      if (!may_leave(site, fastest * fastest, slide)) return;
+      if (!located && dot(slide.after, slide.after) > slide.hold_at_end * site.shell) {
+        released.push_back({bit, {}, {}, 0.0});
+        return;
+      }
+      Release release = {bit, {}, {}, 0.0};
+      if (leaves(site, slide, release)) released.push_back(release);
+    });
   }
 
-  // whether a grain leaves and, if that is wanted, where and with which velocity
-  bool releases(const GrainTable::Site &site, bool located, Release &release) const
+ private:
+  const GrainTable &table;
+  const PastCollision &past;
+  const double speed, max_spin2;    // |Dv|; of omega, squared
+  const double amplitude;           // of -a, over Dv
+  const double rings;               // overshoot, 0 if the contacts do not
+  const double drift, reach;        // bounds, over the velocity of a grain: of what its way adds to F_n, and to Dv.n
+
+  // a grain's velocity relative to the carrier's centre, before the collision and v_t; what holds it at the end
+  struct Slide {
+    double dvn, before[3] = {0.0, 0.0, 0.0}, after[3], hold_at_end;
+  };
+
+  // the velocity of a grain lies between v_t0, what it is carried along with and what that was
+  double fastest_of(double max_dvt) const { return max_dvt + table.max_shell() * std::sqrt(max_spin2); }
+  // whether grains may leave with a largest Dv.n and velocity, and a least c
+  bool may_release(double max_dvn, double fastest, double min_hold) const
   {
-    Slide slide;
+    const double ringing = rings * 2.0 / PI * past.peak;    // of a grain that feels the peak until the end
+    return !stays(max_dvn, fastest * fastest, table.carrier_radius(), min_hold - ringing);
+  }
+  // whether a grain that is never faster may come to the side from which inertia lifts it: where not, F_n only grows
+  bool may_come_round(double dvn, double fastest2, double shell) const
+  {
+    return dvn > 0.0 || dvn * dvn * shell * shell < reach * reach * fastest2;
+  }
+  // whether F_n/m_d does not come to c
+  bool stays(double dvn, double fastest2, double shell, double hold) const
+  {
+    double most = fastest2;    // times |r_pd|
+    if (may_come_round(dvn, fastest2, shell))
+      most += amplitude * std::max(0.0, dvn) * shell + drift * std::sqrt(fastest2);
+    return most <= hold * shell;
+  }
+
+  // finds the slide of a grain; false only if it stays
+  bool may_leave(const GrainTable::Site &site, double max_fastest2, Slide &slide) const
+  {
     slide.dvn = dot(past.dv, site.n);
+    slide.hold_at_end = site.hold - (rings > 0.0 ? ringing_of(site) : 0.0);
+    if (stays(slide.dvn, max_fastest2, site.shell, slide.hold_at_end)) return false;
     for (int d = 0; d < 3; d++) slide.after[d] = past.dv[d] - slide.dvn * site.n[d];
     double ground[3] = {0.0, 0.0, 0.0};    // velocity at which a grain does not slip that friction has not spun
     if (max_spin2 > 0.0) {
@@ -80,56 +132,15 @@ class Impulse {
         slide.after[d] += slide.before[d];
       }
     }
-    const double fastest2 =
-        std::max({dot(slide.after, slide.after), dot(ground, ground), dot(slide.before, slide.before)});
-    const double ringing = rings > 0.0 ? ringing_of(site) : 0.0, hold_at_end = site.hold - ringing;
-    if (outward_bound(slide.dvn, std::sqrt(fastest2), site.shell) <= hold_at_end) return false;
+    const double before2 = dot(slide.before, slide.before);
+    const double fastest2 = std::max({dot(slide.after, slide.after), dot(ground, ground), before2});
+    if (stays(slide.dvn, fastest2, site.shell, slide.hold_at_end)) return false;
 
     double slip[3];
     for (int d = 0; d < 3; d++) slip[d] = slide.after[d] - ground[d];
-    const double part = part_taken(site, slide.dvn, std::sqrt(dot(slip, slip)));
+    const double part = part_taken(site, slide.dvn, dot(slip, slip));
     for (int d = 0; d < 3; d++) slide.after[d] -= part * slip[d];
-    const double end2 = dot(slide.after, slide.after), most2 = std::max(end2, dot(slide.before, slide.before));
-    if (outward_bound(slide.dvn, std::sqrt(most2), site.shell) <= hold_at_end) return false;
-    if (!located && end2 > hold_at_end * site.shell) return true;
-    if (may_come_round(slide.dvn, std::sqrt(most2), site.shell))
-      for (const Phase &phase : PHASES)
-        if (leaves(site, slide, phase, site.hold, release)) return true;
-    return leaves(site, slide, PHASES.back(), hold_at_end, release);
-  }
-
- private:
-  const GrainTable &table;
-  const PastCollision &past;
-  const double speed, max_spin2;    // |Dv|; of omega, squared
-  const double amplitude;           // of -a, over Dv
-  const double rings;               // overshoot, 0 if the contacts do not
-  const double way, drift;    // bounds of the share `way` and, times pi/2, of sine times way; with spin, of `time`
-
-  // a grain's velocity relative to the carrier's centre, before the collision and v_t
-  struct Slide {
-    double dvn, before[3] = {0.0, 0.0, 0.0}, after[3];
-  };
-
-  // whether grains may leave with a largest Dv.n and [Dv]_t, and a least c
-  bool may_release(double max_dvn, double max_dvt, double min_hold) const
-  {
-    // the velocity of a grain lies between v_t0, what it is carried along with and what that was
-    const double fastest = max_dvt + table.max_shell() * std::sqrt(max_spin2);
-    const double ringing = rings * 2.0 / PI * past.peak;    // of a grain that feels the peak until the end
-    return !(outward_bound(max_dvn, fastest, table.carrier_radius()) + ringing <= min_hold);
-  }
-  // whether a grain that is never faster may come to the side from which inertia lifts it: where not, F_n only grows
-  bool may_come_round(double dvn, double fastest, double shell) const
-  {
-    return dvn + way * past.duration * speed * fastest / shell > 0.0;
-  }
-  // F_n/m_d is at most this
-  double outward_bound(double dvn, double fastest, double shell) const
-  {
-    const double centrifugal = fastest * fastest / shell;
-    if (!may_come_round(dvn, fastest, shell)) return centrifugal;
-    return amplitude * std::max(0.0, dvn) + drift * speed * fastest / shell + centrifugal;
+    return !stays(slide.dvn, std::max(dot(slide.after, slide.after), before2), site.shell, slide.hold_at_end);
   }
 
   // what a contact that overshoots adds to F_n/m_d at the end: the load comes to its own in the last half period
@@ -147,18 +158,29 @@ class Impulse {
   }
 
   // of the slip, by friction
-  double part_taken(const GrainTable::Site &site, double dvn, double slip) const
+  double part_taken(const GrainTable::Site &site, double dvn, double slip2) const
   {
     const Material &m = table.material();
     const double held = site.hold * past.duration, sliding = m.friction * (2.0 * held - dvn);    // J
-    if (!(sliding > 0.0)) return 0.0;
+    if (!(sliding > 0.0 && slip2 > 0.0)) return 0.0;
+    const double slip = std::sqrt(slip2);
     if (sliding <= TO_ROLL * slip) return sliding / slip;
-    const double lever = 2.0 * m.rolling * table.carrier_radius() / site.shell;
-    const double pivot = lever * (held + std::sqrt(held * std::max(0.0, held - dvn)));    // K
+    const double rp = table.carrier_radius();
+    const double pivot =
+        2.0 * m.rolling * rp * (held + std::sqrt(held * std::max(0.0, held - dvn))) / site.shell;    // K
     const double rolling = TO_ROLL * slip + (1.0 - TO_ROLL) * std::min(slip, pivot);
-    return slip > 0.0 ? std::min(sliding, rolling) / slip : 0.0;
+    return std::min(sliding, rolling) / slip;
   }
 
+  // whether it leaves, where and with which velocity
+  bool leaves(const GrainTable::Site &site, const Slide &slide, Release &release) const
+  {
+    const double most2 = std::max(dot(slide.after, slide.after), dot(slide.before, slide.before));
+    if (may_come_round(slide.dvn, most2, site.shell))
+      for (const Phase &phase : PHASES)
+        if (leaves(site, slide, phase, site.hold, release)) return true;
+    return leaves(site, slide, PHASES.back(), slide.hold_at_end, release);
+  }
   bool leaves(const GrainTable::Site &site, const Slide &slide, const Phase &phase, double hold, Release &release) const
   {
     double *n = release.direction, *w = release.velocity;
@@ -193,14 +215,8 @@ void releases(const GrainTable &table, const PastCollision &past, const uint64_t
               std::vector<Release> &released)
 {
   const Impulse impulse(table, past);
-  for (int word = 0; word < table.words(); word++) {
-    if (!attached[word] || !impulse.may_release(table.patch(word))) continue;
-    each_bit(attached[word], [&](int k) {
-      Release release;
-      release.bit = word * PATCH + k;
-      if (impulse.releases(table.site(release.bit), located, release)) released.push_back(release);
-    });
-  }
+  for (int word = 0; word < table.words(); word++)
+    if (attached[word]) impulse.releases(word, attached[word], located, released);
 }
 
 }    // namespace
