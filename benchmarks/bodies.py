@@ -4,7 +4,8 @@
     . build/environment; build/venv/bin/python benchmarks/bodies.py compare    a minute
 
 `run` writes the resolved runs to bodies/resolved.csv, a row for each carrier, and bodies/machine.json. `compare` runs
-the functions with both tangential methods on the same inputs, and writes bodies/functions.csv and bodies/comparison.md.
+the functions with three laws of tangential lift-off on the same inputs, and writes bodies/functions.csv,
+bodies/comparison.md and bodies/agreement.csv, which doc/validation.rst shows.
 """
 
 import argparse
@@ -234,6 +235,18 @@ def comparison(resolved: list[dict[str, str]], computed: list[dict[str, str]]) -
     yield from table(["cases", "number", "mean", "largest", f"above {LIMIT}"], summary)
 
 
+def agreements(text: str) -> Iterator[str]:
+    """The last table of the comparison with a column for each law, for the documentation."""
+    kinds: dict[str, list[str]] = {}
+    for line in text[text.index("## Differences") :].splitlines():
+        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        if ":" in name:
+            kind = name.rpartition(":")[0]
+            kinds.setdefault(kind, [f'"{kind}"', cells[0]]).extend(cells[1:3])
+    yield ",".join(["cases", "number", *(cell for law in METHODS for cell in (f"{law}: mean", "largest"))])
+    yield from (",".join(cells) for cells in kinds.values())
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("run", "compare"))
@@ -242,6 +255,7 @@ def main() -> None:
         return
     text = "\n".join(comparison(read(RESOLVED), functions()))
     (HERE / "comparison.md").write_text(text)
+    (HERE / "agreement.csv").write_text("\n".join(agreements(text)) + "\n")
     print(text, end="")
 
 

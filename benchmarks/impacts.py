@@ -7,7 +7,8 @@
 
 `run` writes the table of each NAME.toml (all by default), the functions by each law of tangential lift-off, to
 impacts/NAME.csv, with machine and versions in impacts/machine.json; with --functions the rows of the resolved runs stay
-as they are, as does machine.json. `compare` writes impacts/comparison.md and the figures beside it.
+as they are, as does machine.json. `compare` writes impacts/comparison.md, the figures beside it, and agreement.csv,
+which doc/validation.rst shows.
 """
 
 import argparse
@@ -156,6 +157,16 @@ def groups(rows: list[Result], law: str) -> Iterator[tuple[str, list[Pair]]]:
         yield f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]
     rough = pairs((row for row in rows if row.wall_friction == 0.3), law)
     yield "oblique, zeta 1, wall friction 0.3", [pair for pair in rough if pair[0].angle != 90]
+
+
+def agreements(rows: list[Result]) -> Iterator[list[str]]:
+    """Mean and largest difference by each law, for the documentation."""
+    names = ("ratio", "south", "north")
+    yield ["impacts", "cases", "law", *(cell for name in names for cell in (f"{name}: mean", "largest"))]
+    for kinds in zip(*(groups(rows, law) for law in LAWS), strict=True):
+        for law, (kind, compared) in zip(LAWS, kinds, strict=True):
+            cells = [f"{cell:.4f}" for cell in agreement(kind, compared)[2:-1] if isinstance(cell, float)]
+            yield [*((kind, str(len(compared))) if law == LAWS[0] else ("", "")), law, *cells]
 
 
 def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
@@ -435,6 +446,8 @@ def main() -> None:
     else:
         data = tables()
         (HERE / "comparison.md").write_text("\n".join(comparison(data)))
+        with (HERE / "agreement.csv").open("w", newline="") as stream:
+            csv.writer(stream, lineterminator="\n").writerows(agreements(all_rows(data)))
         figures(data)
 
 
