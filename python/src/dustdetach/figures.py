@@ -29,6 +29,8 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 #: for more curves than these: from dark to light in the order of the curves, in a map even to the eye
 COLOUR_MAP = "viridis"
 FORMATS = ("png", "svg")
+#: a second table of a folder, of resolved runs that its sweep has not made
+MORE = "resolved.csv"
 
 _STYLE: Any = {
     "font.size": 9,
@@ -82,7 +84,8 @@ def plot(folder: str | Path) -> list[Path]:
     """Draw ``figure4`` (straight impacts) and ``figure5`` (angles) from ``folder/results.csv``, what there is of them.
 
     Lines are the detachment functions, the mean over seeds where there are several, dashed or dotted by other laws of
-    tangential lift-off than the first; open markers are resolved runs.
+    tangential lift-off than the first; open markers are resolved runs. Those of ``folder/resolved.csv``, a table that
+    another sweep has made, are drawn as well if it is there.
 
     Returns:
         The files written, PNG and SVG.
@@ -91,9 +94,14 @@ def plot(folder: str | Path) -> list[Path]:
         InvalidInput: no table, or nothing in it that makes a curve.
     """
     folder = as_path(folder, "plot")
-    results = read_csv(folder / TABLE)
-    for row in results:
-        _check(row, folder / TABLE)
+    results = []
+    for table in (folder / TABLE, folder / MORE):
+        if table.name == MORE and not table.exists():
+            continue
+        rows = read_csv(table)
+        for row in rows:
+            _check(row, table)
+        results += rows
     straight = [result for result in results if result.angle == 90]
     oblique = _at_most_angles(results)
     figures = {}
