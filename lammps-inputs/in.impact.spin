@@ -21,7 +21,7 @@ variable grain_diameter   index 20e-6     # m
 variable hamaker          index 14.633e-20    # grain against carrier, J
 variable z0               index 0.4e-9    # m
 variable friction         index 0.3       # grain against carrier
-variable tangential       index estimate
+variable tangential       index impulse
 variable timestep         index 1e-9      # s
 variable limit            index 200000    # steps
 variable rotation         index yes       # no: as if the carrier did not turn

@@ -15,6 +15,7 @@ def test_the_figures_ask_for_what_the_paper_shows():
     assert {case.angle for case in straight} == {90}
     assert {case.restitution for case in straight} == {0.5, 0.7, 0.9}
     assert {case.restitution for case in oblique} == {0.7}
+    assert {case.tangential for case in (*straight, *oblique)} == {"impulse", "estimate"}
     assert {case.angle for case in oblique} == {15, 30, 45, 60, 75, 90}
     for cases in (straight, oblique):
         speeds = {case.speed for case in cases}

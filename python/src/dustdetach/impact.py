@@ -114,7 +114,7 @@ class Impact:
     wall_friction: float = 0.05
     grain_damping: float = 1.0
     seed: int = 1
-    tangential: str = "estimate"
+    tangential: str = "impulse"
     rotation: bool = True
     timestep: float = 1e-9
 
