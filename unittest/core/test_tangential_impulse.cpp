@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <utility>
 
 using namespace Dust;
 
