@@ -320,3 +320,18 @@ TEST(TangentialImpulse, ContactsThatRingLetGoOfWhatFollowedOnesDo)
           << speed << " " << zeta;
     }
 }
+
+TEST(TangentialImpulse, ContactsThatRingLetGoWhereNoVelocityWouldDo)
+{
+  // slower than what adhesion holds on a curved path, but the load comes fast
+  History h;
+  constexpr int STEPS = 1260;
+  h.dt = 1.0e-9;
+  for (int k = 0; k < STEPS; k++) h.a.push_back({0.0, 0.0, 1.0e13 * (STEPS - k - 0.5) * h.dt});
+  ASSERT_LT(0.5 * 1.0e13 * std::pow(STEPS * h.dt, 2), 0.8 * std::sqrt(HOLD * SHELL));
+  const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
+  Material m = CALCITE;
+  EXPECT_EQ(by_collision(texture, GrainTable(texture, m, with(Criteria::IMPULSE)), h).north, 0);
+  m.damping = 0.06;
+  EXPECT_GT(by_collision(texture, GrainTable(texture, m, with(Criteria::IMPULSE)), h).north, 300);
+}
