@@ -36,7 +36,7 @@ class CarrierData : protected Pointers {
   CarrierData &operator=(const CarrierData &) = delete;
 
   // words of attached bits from now on
-  void set_words(int words);
+  void set_words(int n);
   void grow(int nmax);
   void copy(int i, int j);
   void clear(int i);    // no carrier

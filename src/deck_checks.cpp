@@ -46,7 +46,7 @@ void DeckChecks::before_run()
   fixes.check_order();
   fixes.before_run(settings.rotation);
   noticed = told = 0;
-  watched.stage = Watched::NONE;
+  watch_none();
   sizes_change = false;
   for (const Fix *fix : modify->get_fix_list()) sizes_change = sizes_change || fix->diam_flag;
   look_at_contacts();
@@ -75,31 +75,38 @@ void DeckChecks::check_command() const
 }
 
 /* ----------------------------------------------------------------------
-   of those in the group and of those that are to be inserted
+   by type: carriers are those in the group and those that are to be inserted. Grains of this fix are nothing: they come
+   and go with the dust, and what they do to carriers is small
 ------------------------------------------------------------------------- */
 
-std::vector<int> DeckChecks::types_of_carriers() const
+std::vector<Meets> DeckChecks::what_atoms_are() const
 {
+  constexpr int ATOM = static_cast<int>(Meets::ATOM), CARRIER = static_cast<int>(Meets::CARRIER);
   std::vector<int> types(atom->ntypes + 1, 0);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & dust->groupbit) types[atom->type[i]] = 1;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool carrier = atom->mask[i] & dust->groupbit;
+    types[atom->type[i]] = std::max(types[atom->type[i]], carrier ? CARRIER : ATOM);
+  }
   MPI_Allreduce(MPI_IN_PLACE, types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
   for (const char *style : {"^pour", "^deposit"})
     for (Fix *fix : modify->get_fix_by_style(style))
       for (int t = 1; t <= atom->ntypes; t++) {
         int type = t;    // in return for which it says the largest radius
         const auto *radius = static_cast<const double *>(fix->extract("radius", type));
-        if (radius && *radius > 0.0) types[t] = 1;
+        if (radius && *radius > 0.0) types[t] = CARRIER;
       }
   types[settings.emit] = 0;
-  return types;
+  std::vector<Meets> atoms;
+  atoms.reserve(types.size());
+  for (int type : types) atoms.push_back(static_cast<Meets>(type));
+  return atoms;
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DeckChecks::look_at_contacts()
 {
-  const DeckContacts deck(lmp, types_of_carriers(), [this](const Fix *fix) { return fixes.acts_on_carriers(fix); });
+  const DeckContacts deck(lmp, what_atoms_are(), [this](const Fix *fix) { return fixes.acts_on_carriers(fix); });
   contacts = deck.all;
   unread = fixes.unread_contacts();
   for (const std::string &style : deck.other_styles) unread.push_back("pair_style " + style);
@@ -160,7 +167,7 @@ void DeckChecks::settle_stiffen()
           "Fix dust/detach {} stiffen: holds for contacts of pair_style granular and fix wall/gran, not for those "
           "of {}",
           dust->id, style);
-  if (first) settings.stiffen_by(first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
+  settings.stiffen_by(first && first->law == CarrierContact::HOOKE ? HOOKE : HERTZ);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -179,6 +186,14 @@ void DeckChecks::check_all_sizes(double radius) const
 {
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & dust->groupbit) check_size(i, radius);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DeckChecks::stop_at(int i) const
+{
+  error->one(FLERR, "Fix dust/detach {}: force, torque or spin of carrier {} is not finite at step {}", dust->id,
+             atom->tag[i], update->ntimestep);
 }
 
 /* ----------------------------------------------------------------------
@@ -304,12 +319,14 @@ bool DeckChecks::bounced(int i, double steps, const double *impulse) const
    if the integrator stands before this fix. Atoms do not change places between the force and the step that follows.
 ------------------------------------------------------------------------- */
 
+void DeckChecks::watch_none() { watched.stage = (noticed & bit(NOT_FOLLOWED)) ? Watched::NEVER : Watched::NONE; }
+
 void DeckChecks::look_at_force(int i)
 {
   const tagint tag = atom->tag ? atom->tag[i] : 0;
   if (watched.stage == Watched::NONE) {
     watched.stage = Watched::FORCE;
-    watched.i = i;
+    watched.i = watched.after = i;
     watched.tag = tag;
     watched.mass = atom->rmass[i];
     watched.dt = update->dt;
@@ -331,7 +348,7 @@ void DeckChecks::look_at_velocity()
     return;
   }
   const bool complete = same && watched.stage == Watched::FORCES;
-  watched.stage = Watched::NONE;
+  watch_none();
   if (!complete || follows(atom->v[i])) return;
   const std::string suspects = fixes.suspects(i);
   notice(NOT_FOLLOWED,
@@ -361,13 +378,14 @@ bool DeckChecks::follows(const double *velocity) const
 void DeckChecks::notice(Notice what, const std::string &line)
 {
   noticed |= bit(what);
+  watch_none();
   lines[what] = line;
   if (comm->nprocs == 1) tell();
 }
 
 void DeckChecks::tell()
 {
-  watched.stage = Watched::NONE;
+  watch_none();
   if (told == bit(NNOTICES) - 1) return;
   unsigned all = noticed & ~told;
   MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UNSIGNED, MPI_BOR, world);

@@ -7,6 +7,7 @@
 
 #include "pointers.h"
 
+#include "core/motion.h"
 #include "deck_contacts.h"
 #include "deck_fixes.h"
 
@@ -35,6 +36,11 @@ class DeckChecks : protected Pointers {
   // stops if carrier i has another radius than its texture
   void check_size(int i, double radius) const;
   // the same for all carriers, where a fix changes them
+  // a force, torque or spin that is not a number stops the run
+  void check_finite(int i, const Dust::Motion &motion) const
+  {
+    if (!motion.is_finite()) stop_at(i);
+  }
   void look_at_sizes(double radius) const
   {
     if (sizes_change) check_all_sizes(radius);
@@ -55,11 +61,14 @@ class DeckChecks : protected Pointers {
   // over two strong steps
   void watch(int i, double acceleration2, double min_hold)
   {
-    if (!(noticed & bit(NOT_FOLLOWED)) && acceleration2 > min_hold * min_hold) look_at_force(i);
+    if (watched.wants(i) && acceleration2 > min_hold * min_hold) look_at_force(i);
   }
   void step_begins()
   {
-    if (watched.stage != Watched::NONE) look_at_velocity();
+    if (watched.stage != Watched::NONE)
+      look_at_velocity();
+    else
+      watched.after = -1;
   }
 
   // says what any rank has noticed; on all ranks
@@ -90,11 +99,17 @@ class DeckChecks : protected Pointers {
   void notice(Notice, const std::string &);
 
   struct Watched {
-    enum { NONE, FORCE, VELOCITY, FORCES } stage = NONE;    // what is known
+    enum { NONE, FORCE, VELOCITY, FORCES, NEVER } stage = NONE;    // what is known
     int i;
     tagint tag;
     double mass, dt, force[3], next_force[3], velocity[3];
+
+    int after = -1;    // the last one: then the next in the list has its turn
+
+    bool wants(int carrier) const { return stage == NONE ? carrier > after : stage == VELOCITY && i == carrier; }
   } watched;
+  void stop_at(int i) const;
+  void watch_none();
   void look_at_force(int i);
   void look_at_velocity();
   bool follows(const double *change) const;
@@ -102,7 +117,7 @@ class DeckChecks : protected Pointers {
   void check_command() const;
   void look_at_contacts();
   void settle_stiffen();
-  std::vector<int> types_of_carriers() const;
+  std::vector<Meets> what_atoms_are() const;
   enum { NOBODY = -1, SEVERAL = -2 };
   int neighbour(int i) const;
   bool pulled_by_one(int i) const;

@@ -73,6 +73,11 @@ std::string reason_not_to_stiffen(const GranularModel *model, double stiffness)
 {
   const CarrierContact::Law law = law_of(model);
   if (law == CarrierContact::OTHER) return "is " + model->normal_model->name;
+  // forces that do not follow the contact's stiffness stay as they are
+  for (const char *name : {"^velocity", "^mass_velocity", "^viscoelastic"})
+    if (utils::strmatch(model->damping_model->name, name))
+      return fmt::format("has damping {}, which is not softened with it: use coeff_restitution/limited",
+                         model->damping_model->name);
   const std::string &friction = model->tangential_model->name;
   const double *coeffs = model->tangential_model->coeffs;
   const double mu = coeffs[model->tangential_model->num_coeffs - 1];
@@ -89,6 +94,12 @@ std::string reason_not_to_stiffen(const GranularModel *model, double stiffness)
   return "";
 }
 
+// whether a contact of these two is one of a carrier
+bool meet(Meets a, Meets b)
+{
+  return a != Meets::NOTHING && b != Meets::NOTHING && (a == Meets::CARRIER || b == Meets::CARRIER);
+}
+
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
@@ -102,8 +113,8 @@ CarrierContact::CarrierContact(const std::string &_where, GranularModel *model, 
 
 /* ---------------------------------------------------------------------- */
 
-DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<int> &types, const std::function<bool(const Fix *)> &acts) :
-    Pointers(_lmp)
+DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<Meets> &types,
+                           const std::function<bool(const Fix *)> &acts) : Pointers(_lmp)
 {
   if (force->pair && !utils::strmatch(force->pair_style, "^hybrid"))
     look_at_style(force->pair, force->pair_style, types);
@@ -124,25 +135,28 @@ DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<int> &types, const st
 
 /* ---------------------------------------------------------------------- */
 
-void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std::vector<int> &types)
+void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std::vector<Meets> &types)
 {
   if (utils::strmatch(style, "^granular")) return look_at_pairs(dynamic_cast<PairGranular *>(pair), types);
   if (utils::strmatch(style, "^zero")) return;
   bool acts = false;
-  for (int t = 1; t <= atom->ntypes; t++) acts = acts || (types[t] && pair->setflag && pair->setflag[t][t]);
+  for (int t = 1; t <= atom->ntypes; t++) {
+    for (int u = t; u <= atom->ntypes; u++)
+      acts = acts || (meet(types[t], types[u]) && pair->setflag && pair->setflag[t][u]);
+  }
   if (!acts) return;
   other_styles.push_back(style);
   if (!utils::strmatch(style, "^gran/") && !utils::strmatch(style, "^surf/gran")) far_styles.push_back(style);
 }
 
-void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<int> &types)
+void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &types)
 {
   if (!pair || !pair->setflag || !pair->types_indices) return;
   for (int t = 1; t <= atom->ntypes; t++)
     for (int u = t; u <= atom->ntypes; u++) {
       // what is not given has been mixed, but as part of a hybrid it has not all pairs of types
       const bool given = pair->setflag[t][u];
-      if (!types[t] || !types[u] || !(given || pair == force->pair)) continue;
+      if (!meet(types[t], types[u]) || !(given || pair == force->pair)) continue;
       all.emplace_back(fmt::format("pair_coeff {} {}", t, u), pair->models_list[pair->types_indices[t][u]], !given,
                        false);
     }

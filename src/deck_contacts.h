@@ -33,19 +33,22 @@ struct CarrierContact {
   std::string not_stiffened;    // why softening it by one factor is not softening all of its forces alike, or empty
 };
 
-// the models between the carriers of these types, types[type] != 0, and between carriers and their walls
+// the models between carriers and the atoms they can meet, and between carriers and their walls
+
+// what the atoms of a type are to a fix
+enum class Meets { NOTHING, ATOM, CARRIER };
 
 class DeckContacts : protected Pointers {
  public:
-  DeckContacts(class LAMMPS *, const std::vector<int> &types, const std::function<bool(const class Fix *)> &acts);
+  DeckContacts(class LAMMPS *, const std::vector<Meets> &types, const std::function<bool(const class Fix *)> &acts);
 
   std::vector<CarrierContact> all;
   // pair styles that push carriers but are no granular models; those of them that act beyond contact
   std::vector<std::string> other_styles, far_styles;
 
  private:
-  void look_at_style(class Pair *, const std::string &style, const std::vector<int> &types);
-  void look_at_pairs(class PairGranular *, const std::vector<int> &types);
+  void look_at_style(class Pair *, const std::string &style, const std::vector<Meets> &types);
+  void look_at_pairs(class PairGranular *, const std::vector<Meets> &types);
 };
 
 }    // namespace LAMMPS_NS

@@ -96,8 +96,10 @@ void DeckFixes::check_order() const
   check_contacts();
   bool after = false;
   for (const Fix *other : modify->get_fix_list()) {
-    if (other == dust) after = true;
-    if (utils::strmatch(other->style, "^dust/detach") || utils::strmatch(other->style, "^store/force")) continue;
+    // a fix that is defined again has its place in the list, with nothing there yet
+    if (other == dust || !other) after = true;
+    if (!other || utils::strmatch(other->style, "^dust/detach") || utils::strmatch(other->style, "^store/force"))
+      continue;
     const bool contact = is_contact(other);
     if (contact && after)
       error->all(FLERR,

@@ -238,6 +238,8 @@ void DustOptions::complete()
     if (coverage != UNSET || seed || bare_given || distributed)
       error->all(FLERR, "{} {} goes with texture monolayer: a texture file has its own grains", command, extra);
   }
+  if (orientation_seed && !atom->tag_enable)
+    error->all(FLERR, "{} orientation random needs atom IDs: atom_modify id yes", command);
   // a carrier that meets the wall with any side has no use for a side without grains
   if (orientation_seed && !bare_given) bare.half_angle = 0.0;
 

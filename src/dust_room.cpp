@@ -5,6 +5,7 @@
 #include "dust_room.h"
 
 #include "dust_atoms.h"
+#include "dust_walls.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -26,6 +27,7 @@ DustRoom::DustRoom(LAMMPS *_lmp, std::vector<Sphere> list) :
     if (domain->prd[d] > domain->prd[axis]) axis = d;
   for (Sphere &sphere : spheres) {
     domain->remap(sphere.x);
+    domain->remap(sphere.from);
     largest = std::max(largest, sphere.radius);
   }
   std::iota(along.begin(), along.end(), 0);
@@ -37,7 +39,10 @@ DustRoom::DustRoom(LAMMPS *_lmp, std::vector<Sphere> list) :
 std::vector<int> DustRoom::find() const
 {
   std::vector<int> room(spheres.size());
-  for (size_t k = 0; k < room.size(); k++) room[k] = !DustAtoms::beyond_fixed_border(lmp, spheres[k].x);
+  const DustWalls walls(lmp);
+  for (size_t k = 0; k < room.size(); k++)
+    room[k] = !DustAtoms::beyond_fixed_border(lmp, spheres[k].x) &&
+              !walls.stop(spheres[k].from, spheres[k].x, spheres[k].radius);
   clear_of_atoms(room);
   clear_of_each_other(room);
   return room;

@@ -11,15 +11,15 @@
 
 namespace LAMMPS_NS {
 
-/* Where spheres can be put: inside the fixed borders of the box, over no atom, and over none of their own that comes
+/* Where spheres can be put: inside the fixed borders of the box, before the walls that act on all atoms, over no atom, and over none of their own that comes
    before. All ranks give the same list and get the same answer, whichever rank an atom belongs to and whatever
    periodic image of it is near. */
 
 class DustRoom : protected Pointers {
  public:
   struct Sphere {
-    double x[3], radius;
-    tagint carrier;    // may touch it: grains leave from there
+    double x[3], from[3], radius;    // from: where it has flown from
+    tagint carrier;                  // may touch it: grains leave from there
   };
   DustRoom(class LAMMPS *, std::vector<Sphere>);
 

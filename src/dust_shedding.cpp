@@ -75,10 +75,11 @@ double DustShedding::emit_grains(const std::function<bool(int)> &ready)
   const std::vector<Candidate> all = gather(ready);
   if (all.empty()) return 0.0;
   std::vector<DustRoom::Sphere> spheres;
-  for (const Candidate &c : all) spheres.push_back({{c.x[0], c.x[1], c.x[2]}, c.radius, tagint(c.carrier)});
+  for (const Candidate &c : all)
+    spheres.push_back({{c.x[0], c.x[1], c.x[2]}, {c.from[0], c.from[1], c.from[2]}, c.radius, tagint(c.carrier)});
   const std::vector<int> room = DustRoom(lmp, std::move(spheres)).find();
   const double back = send_back(all, room);
-  if (back < double(all.size())) create(all, room);
+  if (std::count(room.begin(), room.end(), 1)) create(all, room);
   return back;
 }
 
@@ -109,7 +110,8 @@ std::vector<DustShedding::Candidate> DustShedding::gather(const std::function<bo
   for (int i = 0; i < atom->nlocal; i++) {
     if (slot[i] < 0 || !ready(i)) continue;
     for (const Grain &g : lists[slot[i]].grains) {
-      Candidate c = {double(atom->tag[i]), g.number, double(comm->me), double(i), g.mass, g.radius, {}, {}, {}};
+      Candidate c = {double(atom->tag[i]), g.number, double(comm->me), double(i), g.mass, g.radius, {}, {}, {}, {}};
+      std::copy_n(g.x, 3, c.from);
       for (int d = 0; d < 3; d++) c.x[d] = g.x[d] + (clock - g.time) * g.v[d];
       std::copy_n(g.v, 3, c.v);
       std::copy_n(g.spin, 3, c.spin);

@@ -104,7 +104,7 @@ class DustShedding : protected Pointers {
     double carrier, number;
     double rank, index;    // of its carrier
     double mass, radius;
-    double x[3], v[3], spin[3];
+    double x[3], v[3], spin[3], from[3];    // from: where it left
   };
   std::vector<Candidate> gather(const std::function<bool(int)> &ready);
   double send_back(const std::vector<Candidate> &, const std::vector<int> &room);

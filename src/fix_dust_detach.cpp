@@ -88,8 +88,6 @@ void FixDustDetach::build()
         coat.table->grains(), coat.table->mean_mass(), coat.table->min_hold(), coat.table->max_hold());
 }
 
-/* ---------------------------------------------------------------------- */
-
 int FixDustDetach::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE; }
 
 /* ---------------------------------------------------------------------- */
@@ -118,6 +116,7 @@ void FixDustDetach::init()
       error->all(FLERR, "Fix dust/detach group {} has no carriers, and no fix inserts any", group->names[igroup]);
   }
   weigh();
+  share_exchange_room();    // commands between runs move atoms, too
 }
 
 /* ----------------------------------------------------------------------
@@ -139,8 +138,6 @@ void FixDustDetach::setup(int /*vflag*/)
   }
   if (settings.lose_mass) tell_ghosts();
 }
-
-void FixDustDetach::setup_post_neighbor() { post_neighbor(); }
 
 /* ----------------------------------------------------------------------
    atoms have come, gone or changed places
@@ -274,21 +271,15 @@ Dust::Motion FixDustDetach::motion_of(int i) const
   Dust::Motion motion = {};
   const double per_mass = settings.stiffen_acceleration / atom->rmass[i];
   for (int d = 0; d < 3; d++) motion.acceleration[d] = atom->f[i][d] * per_mass;
-  if (!settings.rotation) return check_finite(i, motion);
-  constexpr double INERTIA = 0.4;    // of a sphere, as in fix nve/sphere
-  const double per_inertia = per_mass / (INERTIA * atom->radius[i] * atom->radius[i]);
-  for (int d = 0; d < 3; d++) {
-    motion.angular_acceleration[d] = atom->torque[i][d] * per_inertia;
-    motion.spin[d] = atom->omega[i][d];
+  if (settings.rotation) {
+    constexpr double INERTIA = 0.4;    // of a sphere, as in fix nve/sphere
+    const double per_inertia = per_mass / (INERTIA * atom->radius[i] * atom->radius[i]);
+    for (int d = 0; d < 3; d++) {
+      motion.angular_acceleration[d] = atom->torque[i][d] * per_inertia;
+      motion.spin[d] = atom->omega[i][d];
+    }
   }
-  return check_finite(i, motion);
-}
-
-const Dust::Motion &FixDustDetach::check_finite(int i, const Dust::Motion &motion) const
-{
-  if (!motion.is_finite())
-    error->one(FLERR, "Fix dust/detach {}: force, torque or spin of carrier {} is not finite at step {}", id,
-               atom->tag[i], update->ntimestep);
+  checks.check_finite(i, motion);
   return motion;
 }
 
@@ -305,9 +296,7 @@ void FixDustDetach::collide(int i)
     record(i);
   }
   checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), coat.table->min_hold());
-  const Dust::TangentialLaw *law = coat.table->tangential();
-  const bool grows = !collision.weak() || (law && law->needs_impulses);
-  if (grows) make_exchange_room(i);
+  if (settings.emit || collision.max_packed_size() > exchange_room) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
@@ -380,27 +369,20 @@ void FixDustDetach::record(int i)
     const int number = coat.table->grain(d.bit);
     const Dust::Grain &grain = coat.texture.grains[number];
     const double distance = coat.radius + grain.radius, *n = d.direction, *w = d.velocity;
-    const double before = d.before_end / settings.stiffen_time;    // when it left, and there the carrier was
-    double place[3], speed[3];
-    for (int k = 0; k < 3; k++) {
-      place[k] = x[k] - before * velocity[k] + d.carrier_place[k] / settings.stiffen_time + distance * n[k];
-      speed[k] = velocity[k] + d.carrier_velocity[k] + w[k];
-    }
-    if (settings.keep_rows)
-      rows.add({double(update->ntimestep) - std::round(before / update->dt), double(atom->tag[i]), number + 1.0,
-                d.mode + 1.0, 2.0 * grain.radius, place[0], place[1], place[2], speed[0], speed[1], speed[2]});
-    if (!settings.lose_mass) continue;
     const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
+    const double before = d.before_end / settings.stiffen_time;    // when it left: as the carrier moved then
+    DustShedding::Grain left = {number + 1.0, mass, grain.radius, shedding.now() - before, {}, {}, {}};
+    for (int k = 0; k < 3; k++) {
+      left.x[k] = x[k] - before * velocity[k] + d.carrier_place[k] / settings.stiffen_time + distance * n[k];
+      left.v[k] = velocity[k] + d.carrier_velocity[k] + w[k];
+      left.spin[k] = spin[k];
+      momentum[k] += mass * left.v[k];
+    }
     lost_mass += mass;
-    for (int k = 0; k < 3; k++) momentum[k] += mass * speed[k];
-    if (settings.emit)
-      shedding.wait(i, {number + 1.0,
-                        mass,
-                        grain.radius,
-                        shedding.now() - before,
-                        {place[0], place[1], place[2]},
-                        {speed[0], speed[1], speed[2]},
-                        {spin[0], spin[1], spin[2]}});
+    if (settings.keep_rows)
+      rows.add({double(update->ntimestep) - std::round(before / update->dt), double(atom->tag[i]), left.number,
+                d.mode + 1.0, 2.0 * grain.radius, left.x[0], left.x[1], left.x[2], left.v[0], left.v[1], left.v[2]});
+    if (settings.emit) shedding.wait(i, left);
   }
   if (settings.lose_mass) shedding.take_off(i, lost_mass, momentum);
   mine.weight += lost;
@@ -513,6 +495,8 @@ void FixDustDetach::post_run()
   }
   if (settings.lose_mass) tell_ghosts();
   share_exchange_room();
+  for (int i = 0; i < atom->nlocal; i++)    // of collisions that are not over, too
+    if (carriers.state[i] >= 0) checks.collision_over(i, 0.0, course_of(collisions[carriers.state[i]]));
   checks.tell();
 }
 
@@ -566,7 +550,10 @@ int FixDustDetach::fixed_size() const { return 2 + carriers.size(); }
 // twice what is needed now, so that Comm need not enlarge its buffers each time
 void FixDustDetach::make_exchange_room(int i)
 {
-  const int needed = packed_size(i) - fixed_size();
+  Dust::Packer counter;
+  shedding.pack(i, false, counter);
+  if (carriers.state[i] >= 0) collisions[carriers.state[i]].pack(counter);
+  const int needed = counter.size();
   if (needed <= exchange_room) return;
   exchange_room = 2 * needed;
   maxexchange = fixed_size() + 1 + exchange_room;
@@ -629,10 +616,6 @@ int FixDustDetach::pack_with_size(int i, bool for_file, double *buf) const
   return to.size() + 1;
 }
 
-int FixDustDetach::pack_exchange(int i, double *buf) { return pack_with_size(i, false, buf); }
-
-int FixDustDetach::pack_restart(int i, double *buf) { return pack_with_size(i, true, buf); }
-
 int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 {
   unpack(nlocal, buf + 1);
@@ -684,8 +667,6 @@ void FixDustDetach::unpack_restart(int i, int nth)
   for (int k = 0; k < nth; k++) buf += static_cast<int>(buf[0]);
   unpack(i, buf + 1);
 }
-
-int FixDustDetach::size_restart(int i) { return packed_size(i) + 1; }
 
 int FixDustDetach::maxsize_restart()
 {

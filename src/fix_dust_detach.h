@@ -37,7 +37,7 @@ class FixDustDetach : public Fix {
   void setup_pre_exchange() override;
   void pre_exchange() override;
   void setup(int) override;
-  void setup_post_neighbor() override;
+  void setup_post_neighbor() override { post_neighbor(); }
   void initial_integrate(int) override;
   void post_neighbor() override;
   void post_force(int) override;
@@ -50,16 +50,16 @@ class FixDustDetach : public Fix {
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
+  int pack_exchange(int i, double *buf) override { return pack_with_size(i, false, buf); }
   int unpack_exchange(int, double *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
 
   void write_restart(FILE *) override;
   void restart(char *) override;
-  int pack_restart(int, double *) override;
+  int pack_restart(int i, double *buf) override { return pack_with_size(i, true, buf); }
   void unpack_restart(int, int) override;
-  int size_restart(int) override;
+  int size_restart(int i) override { return packed_size(i) + 1; }
   int maxsize_restart() override;
 
  private:
@@ -81,7 +81,6 @@ class FixDustDetach : public Fix {
   // collisions under way on this rank
   Dust::CollisionPool collisions;
   Dust::Motion motion_of(int) const;
-  const Dust::Motion &check_finite(int, const Dust::Motion &) const;
   void collide(int);
   void begin_collision(int, const Dust::Motion &);
   void finish_collision(int, int);

@@ -57,7 +57,7 @@ def collide(speed: float, alpha: float) -> Collision:
 @cache
 def damping(restitution: float) -> float:
     """The alpha that realises a coefficient of restitution."""
-    return brentq(lambda alpha: collide(1.0, alpha).restitution - restitution, 1e-6, 5.0, xtol=1e-6)
+    return brentq(lambda alpha: collide(1.0, alpha).restitution - restitution, 1e-6, 15.0, xtol=1e-6)
 
 
 def hemispheres(speed: float, restitution: float, bare: float) -> tuple[float, float]:

@@ -258,7 +258,8 @@ def test_a_full_disk_behind_a_picture(command, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_names_of_files_need_not_be_text(command, tmp_path):
+def test_names_of_files_need_not_be_text(command, tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONIOENCODING", "utf-8:strict")
     name = os.fsdecode(b"caf\xe9")
     (tmp_path / "sweep.toml").write_text("speed = 2\n")
     process = command("sweep", "sweep.toml", "--out", name, encoding="utf-8", errors="surrogateescape")

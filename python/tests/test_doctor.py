@@ -8,7 +8,14 @@ import pytest
 def test_a_sound_build(command, tmp_path):
     process = command("doctor")
     assert process.returncode == 0, process.stdout
-    for words in ("LAMMPS version: 20", "MPI: Open MPI", "FFT: FFTW3", "dustplugin.so, loads", "decks: "):
+    for words in (
+        "LAMMPS version: 20",
+        "MPI: Open MPI",
+        "FFT: FFTW3",
+        "dustplugin.so, loads",
+        "libdustcore.so, loads",
+        "decks: ",
+    ):
         assert words in process.stdout
     assert "WRONG" not in process.stdout
     assert list(tmp_path.iterdir()) == []
@@ -18,6 +25,7 @@ def test_a_sound_build(command, tmp_path):
     ("name", "words"),
     [
         ("DUSTDETACH_PLUGIN", "plugin: no plugin dustplugin.so"),
+        ("DUSTDETACH_PLUGIN", "texture files: no library libdustcore.so"),
         ("DUSTDETACH_INPUTS", "decks: no deck in.impact"),
         ("PYTHONPATH", "LAMMPS: no Python module lammps"),
     ],

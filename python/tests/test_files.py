@@ -12,7 +12,7 @@ import pytest
 
 from dustdetach import DustError, InvalidInput, read_cases, read_csv
 from dustdetach.errors import MachineFault
-from dustdetach.files import as_path, check_room, make_folder, read_text, replace_file, scratch_folder
+from dustdetach.files import as_path, check_room, make_folder, read_text, replace_file, scratch_folder, writable_file
 from dustdetach.frames import frame_sizes
 from dustdetach.texture import read_texture
 
@@ -128,7 +128,9 @@ def test_what_is_no_text_is_named(tmp_path, content, words):
     assert words in str(refusal.value)
 
 
-@pytest.mark.parametrize("read", [read_text, read_texture, frame_sizes, read_csv, read_cases])
+@pytest.mark.parametrize(
+    "read", [read_text, read_texture, frame_sizes, read_csv, read_cases, lambda path: writable_file(path, "--out")]
+)
 @pytest.mark.parametrize("device", ["/dev/zero", "/dev/null", "/dev/full"])
 def test_a_device_may_have_no_end(read, device):
     with pytest.raises(InvalidInput, match=f"{device}: is a device"):

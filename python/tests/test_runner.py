@@ -46,6 +46,9 @@ def test_straight_impacts_follow_the_closed_form(restitution, bare):
         {"speed": 8.0, "angle": 1.0},
         {"speed": 1.0, "z0": 1e-10},
         {"speed": 0.1, "rotation": False},
+        # what the fix takes for rest, and what leaves the box that the deck begins with
+        {"speed": 0.001, "restitution": 0.02},
+        {"speed": 100.0, "angle": 1e-6},
     ],
 )
 def test_a_weak_or_grazing_impact_ends_by_rebound(changes):

@@ -14,12 +14,12 @@ namespace Dust {
  *
  * Rest is told by the course of |a| alone, as no grain's hold says how long a contact takes. The unit of time is the
  * collision's own, integral |a| dt/max |a| over the burst and since. An impact that nothing else disturbs rises once
- * and falls once, to 0, which for Hertz contacts of restitution 1 (0.1) takes 1.8 (2.8) of these units; between two
- * steps in which it grows, or has fallen by FALL since the last such step, there are at most 0.33 (0.6) of them. What
- * lasts comes down to what carries the weight, and falls no more. So a collision rests when it has been quiet, neither
- * lively nor fallen so, for QUIET of its own times. One that is weak, as inertia has not been able to move a grain,
- * also rests if it takes longer than LONG of them; another one only when it has been quiet for PAUSE times its burst,
- * too. */
+ * and falls once, to 0: for Hertz contacts of restitution 0.1 to 1 that takes at no time more than 2.9 of these units,
+ * and between two steps in which it grows, or has fallen by FALL since the last such step, there are at most 0.6 of
+ * them. What lasts comes down to what carries the weight, and falls no more. So a collision rests when it has been
+ * quiet, neither lively nor fallen so, for QUIET of its own times. One that is weak, as inertia has not been able to
+ * move a grain, also rests if it takes longer than LONG of them; another one only when it has been quiet for PAUSE
+ * times its burst, too. */
 class Activity {
  public:
   bool has_begun() const { return steps > 0.0; }

@@ -91,16 +91,6 @@ bool Collision::step(const GrainTable &table, const Motion &middle, double dt, u
   return !work.losses.empty();
 }
 
-Collision::Strength Collision::strength_of(const GrainTable &table, const Motion &motion)
-{
-  Strength s;
-  s.size2 = dot(motion.acceleration, motion.acceleration);
-  s.size = std::sqrt(s.size2);
-  s.rotation = table.max_shell() * motion.rotation_bound();
-  s.may_move = s.size + s.rotation > table.moving_force();
-  return s;
-}
-
 void Collision::add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively)
 {
   course.activity.add(size, lively);

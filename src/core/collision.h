@@ -14,6 +14,7 @@
 #include "quaternion.h"
 #include "tangential_law.h"
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -90,11 +91,11 @@ class alignas(64) Collision {
   void begin(const Quaternion &orientation, const double *spin);
 
   /*! One time step: Eq. 2 and lift-off normal
-   *  \param motion    must be finite; its spin is that of the middle of the step that ends now, as a leapfrog has it
+   *  \param middle    must be finite; its spin is that of the middle of the step that ends now, as a leapfrog has it
    *  \param attached  bits of the grains; those that leave are cleared
    *  \param work      the grains that leave are appended to its list
    *  \return          true if any left */
-  bool step(const GrainTable &table, const Motion &motion, double dt, uint64_t *attached, Workspace &work);
+  bool step(const GrainTable &table, const Motion &middle, double dt, uint64_t *attached, Workspace &work);
 
   /*! Whether it has come to rest though the contact lasts */
   bool at_rest() const { return course.activity.at_rest(weak()); }
@@ -121,6 +122,16 @@ class alignas(64) Collision {
   // transfer to another rank and restart. The schedule is begun anew, which changes no result
   void pack(Packer &packer) const;
   int packed_size() const;
+  /*! At least that, and told at once */
+  int max_packed_size() const
+  {
+    constexpr size_t SIZES = 16;    // of all vectors, and other single numbers
+    size_t size = SIZES + numbers_of<Course>();
+    if (impulses) size += numbers_of<ImpulseRecord::Span>() * ImpulseRecord::MAX_SPANS;
+    if (strong)
+      size += numbers_of<Strong::State>() + strong->start.size() + numbers_of<Motion>() * strong->history.kept().size();
+    return static_cast<int>(size);
+  }
   void unpack(Unpacker &unpacker);
 
  private:
@@ -145,7 +156,12 @@ class alignas(64) Collision {
     double size2, size, rotation;    // of the acceleration; at most what rotation adds on any grain
     bool may_move;
   };
-  static Strength strength_of(const GrainTable &table, const Motion &motion);
+  static Strength strength_of(const GrainTable &table, const Motion &motion)
+  {
+    const double size2 = dot(motion.acceleration, motion.acceleration), size = std::sqrt(size2);
+    const double rotation = table.max_shell() * motion.rotation_bound();
+    return {size2, size, rotation, size + rotation > table.moving_force()};
+  }
 
   void become_strong(const GrainTable &table, Workspace &work);
   void add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively);

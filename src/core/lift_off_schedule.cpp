@@ -94,10 +94,9 @@ void LiftOffSchedule::begin(const GrainTable &table, const Motion &motion, const
   for (int p = 0; p < table.words(); p++) {
     const GrainTable::Patch &patch = table.patch(p);
     if (!attached[p]) continue;
-    // the first grain to lift off could be at either end of the patch along the axis
-    const double u = dot(axis, patch.centre), fore = u + patch.radius, aft = u - patch.radius;
-    if (is_late(patch.min_hold - spun - size * fore, fore) && is_late(patch.min_hold - spun - size * aft, aft))
-      continue;
+    // the first grain to lift off is at the fore end of the patch along the axis, as the horizon is size at most
+    const double fore = dot(axis, patch.centre) + patch.radius;
+    if (is_late(patch.min_hold - spun - size * fore, fore)) continue;
     each_bit(attached[p], [&](int k) {
       const int bit = p * PATCH + k;
       const GrainTable::Site &site = table.site(bit);

@@ -39,11 +39,12 @@ struct Motion {
     return m;
   }
 
-  /*! Whether all of it is finite, squares included: nothing else may ask about a motion that is not */
+  /*! Whether all of it is finite: nothing else may ask about a motion that is not */
   bool is_finite() const
   {
-    return std::isfinite(dot(acceleration, acceleration) + dot(angular_acceleration, angular_acceleration) +
-                         dot(spin, spin));
+    double sum = 0.0;
+    for (int d = 0; d < 3; d++) sum += acceleration[d] + angular_acceleration[d] + spin[d];
+    return std::isfinite(sum);
   }
 
   bool rotates() const { return dot(angular_acceleration, angular_acceleration) > 0.0 || dot(spin, spin) > 0.0; }

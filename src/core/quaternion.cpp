@@ -10,9 +10,9 @@
 
 using namespace Dust;
 
-Quaternion Quaternion::operator*(const Quaternion &b) const
+Quaternion Quaternion::operator*(const Quaternion &first) const
 {
-  const double *p = q, *r = b.q;
+  const double *p = q, *r = first.q;
   return {{p[0] * r[0] - p[1] * r[1] - p[2] * r[2] - p[3] * r[3], p[0] * r[1] + p[1] * r[0] + p[2] * r[3] - p[3] * r[2],
            p[0] * r[2] - p[1] * r[3] + p[2] * r[0] + p[3] * r[1],
            p[0] * r[3] + p[1] * r[2] - p[2] * r[1] + p[3] * r[0]}};

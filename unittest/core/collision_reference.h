@@ -36,7 +36,8 @@ struct History {
 };
 
 struct Outcome {
-  std::map<int, std::pair<int, int>> left;    // grain: step, mode
+  std::map<int, std::pair<int, int>> left;     // grain: step, mode
+  std::map<int, std::pair<Vec, Vec>> where;    // and its direction and velocity, in space
   int north = 0, sliding = 0, rolling = 0;
   int steps = 0;    // until the end
 };
@@ -135,6 +136,7 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
         mode = ROLLING;
       if (mode != NMODES) {
         out.left[i] = {k, mode};
+        out.where[i] = {n, cross(spin[k], r)};
         attached = false;
       }
     }
@@ -174,6 +176,7 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
       }
       if (attached && mass * dot(vt, vt) / r_pd > fc) {
         out.left[i] = {out.steps, TANGENTIAL};
+        out.where[i] = {n0, vt};
         attached = false;
       }
     }
@@ -216,10 +219,15 @@ inline Outcome by_collision(const Texture &texture, const GrainTable &table, con
     for (const Detachment &d : detached) {
       EXPECT_EQ(out.left.count(table.grain(d.bit)), 0u) << "a grain left twice";
       out.left[table.grain(d.bit)] = {static_cast<int>(k), d.mode};
+      out.where[table.grain(d.bit)] = {{d.direction[0], d.direction[1], d.direction[2]},
+                                       {d.velocity[0], d.velocity[1], d.velocity[2]}};
+      EXPECT_EQ(d.before_end, 0.0);
     }
     detached.clear();
     if (handover && k % handover == 0) {
       std::vector<double> buf(collision.packed_size());
+      EXPECT_GE(collision.max_packed_size(), collision.packed_size());
+      EXPECT_LE(collision.max_packed_size(), collision.packed_size() + 16);
       Packer packer(buf.data());
       collision.pack(packer);
       Collision other;
@@ -246,6 +254,12 @@ inline void expect_same(const Outcome &a, const Outcome &b)
   EXPECT_EQ(a.north, b.north);
   EXPECT_EQ(a.sliding, b.sliding);
   EXPECT_EQ(a.rolling, b.rolling);
+  if (a.left != b.left) return;
+  for (const auto &[grain, at] : a.where) {
+    const auto &[n, v] = b.where.at(grain);
+    EXPECT_NEAR(size(at.first - n), 0.0, 1.0e-9);
+    EXPECT_NEAR(size(at.second - v), 0.0, 1.0e-7 * (1.0 + size(v)));    // a root near 0 in Eq. 5
+  }
 }
 
 // a few pulses in random directions: straight, turning, with several peaks and with kinks; with or without rotation

@@ -54,3 +54,16 @@ TEST(ImpulseRecord, KeepsSumsInBoundedMemory)
     EXPECT_NEAR(time, 0.0, 1e-9);
   }
 }
+
+TEST(ImpulseRecord, SpansAreOfSoManyStepsEach)
+{
+  for (int steps : {10, 64, 65, 200, 1000, 5000}) {
+    ImpulseRecord record;
+    const double a[3] = {1.0, 0.0, 0.0}, spin[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < steps; k++) record.add(a, spin, 1.0);
+    int length = 1;
+    while (steps > length * ImpulseRecord::MAX_SPANS) length *= 2;
+    for (size_t k = 0; k + 1 < record.spans().size(); k++) EXPECT_EQ(record.spans()[k].duration, length) << steps;
+    EXPECT_LE(record.spans().back().duration, length);
+  }
+}

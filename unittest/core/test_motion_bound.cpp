@@ -8,11 +8,72 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
 using namespace Dust;
+
+TEST(MotionBound, IsThatOfItsHeader)
+{
+  // V, W, the angle by which n turns and what F_n/m stays below, from their integrals; 2 % more for the steps
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> u(0.2, 1.0);
+  for (int i = 0; i < 200; i++) {
+    ImpulseRecord record;
+    const int spans = 2 + i % 20;
+    const double dt = 1.0e-7 * u(random), theta = u(random), peak = 3.0 * HOLD * u(random);
+    const Vec spin0 = 3.0e3 * u(random) * random_direction(random);
+    Vec spin = spin0, before, all;
+    double spun = 0.0, changes = 0.0, fastest = size(spin0);
+    std::vector<Vec> forces;
+    for (int k = 0; k < spans; k++) {
+      const Vec a = peak * u(random) * random_direction(random), next = 3.0e3 * u(random) * random_direction(random);
+      record.add(&a.x, &next.x, dt);
+      spun += size(next - spin);
+      changes += size(a - before);
+      fastest = std::max(fastest, size(next));
+      spin = next;
+      before = a;
+      all = all + a;
+      forces.push_back(a);
+    }
+    changes += size(before);
+    const Vec axis = 1.0 / size(all) * all;
+    double along = 0.0, aside = 0.0;
+    for (const Vec &a : forces) {
+      along += dt * std::fabs(dot(a, axis));
+      aside += dt * size(a - dot(a, axis) * axis);
+    }
+    const double time = spans * dt, hold = HOLD * u(random), rd = RD * u(random), shell = RP + rd, more = 1.02;
+    const auto own = [&](double r_12_of_r_d) {
+      const double s = 2.0 * hold * r_12_of_r_d * (1.0 + std::sqrt(1.0 + peak / hold)),
+                   l = std::sqrt(shell * shell + 0.4 * rd * rd);
+      return std::sqrt(2.5) * theta * s * time + l * spun + 0.5 * shell * fastest * fastest * time;
+    };
+    const MotionBound bound(record, &spin0.x, peak, theta, RP);
+
+    // a grain: the impulses along the axis count with what is tangential of them, as far as n turns
+    const Vec n = random_direction(random);
+    const auto [angle, centrifugal] = bound.of(&n.x, hold, shell);
+    const double v = along + aside + own(RP / shell), turns = more * (v / shell + fastest) * time;
+    EXPECT_NEAR(angle, turns, 1.0e-9 * turns);
+    const double across = std::sqrt(1.0 - dot(n, axis) * dot(n, axis)) + turns;
+    const double w = along * std::min(1.0, across) + aside + own(RP / shell) + shell * fastest;
+    EXPECT_NEAR(centrifugal, more * w * w / shell, 1.0e-9 * centrifugal);
+
+    // any grain
+    const double v_any = along + aside + own(1.0), turns_any = more * (v_any / RP + fastest) * time,
+                 w_any = v_any + shell * fastest, centrifugal_any = more * w_any * w_any / RP;
+    const double outward = peak * (1.0 + turns_any) + centrifugal_any;
+    EXPECT_TRUE(bound.any_may_leave(0.999 * outward, hold, shell));
+    EXPECT_FALSE(bound.any_may_leave(1.001 * outward, hold, shell));
+    const double rings = std::max(outward / 0.3, (changes + turns_any * peak + 4.0 * centrifugal_any) / 0.95);
+    EXPECT_TRUE(bound.any_may_ring_off(0.999 * rings, hold, shell));
+    EXPECT_FALSE(bound.any_may_ring_off(1.001 * rings, hold, shell));
+  }
+}
 
 TEST(MotionBound, HoldsForWhatMovesMostAndSparesWhatDoesNot)
 {

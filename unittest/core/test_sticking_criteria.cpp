@@ -109,6 +109,27 @@ TEST(StickingCriteria, PatchesAreBoundedByTheirGrains)
   EXPECT_GT(told, 300);
 }
 
+TEST(StickingCriteria, PatchesOfGrainsAtManyDistancesAreBoundedToo)
+{
+  // grains as large as half their carrier, all of them nearly at one place: what rotation adds differs most among them
+  Texture texture;
+  texture.carrier_radius = RP;
+  for (int k = 0; k < 60; k++) texture.grains.push_back({{0.0, 0.0, 1.0}, RP * (0.01 + 0.008 * k)});
+  const GrainTable table(texture, CALCITE, Criteria());
+  std::mt19937 random(6);
+  for (int i = 0; i < 2000; i++) {
+    Motion motion = random_motion(random, table.min_hold(), true);
+    for (double &x : motion.acceleration) x *= 0.01 * (i % 3);
+    for (Mode mode : {SLIDING, ROLLING}) {
+      const Range range = excess_in_patch(table, mode, 0, motion);
+      for (int bit = 0; bit < table.grains(); bit++) {
+        EXPECT_LE(range.min, excess(table, mode, bit, motion));
+        EXPECT_GE(range.max, excess(table, mode, bit, motion));
+      }
+    }
+  }
+}
+
 TEST(StickingCriteria, NoSmallerForceMeetsThem)
 {
   // along the worst direction: g_n/g = slope/sqrt(1 + slope^2)

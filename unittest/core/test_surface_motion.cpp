@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 using namespace Dust;
 
@@ -137,6 +138,19 @@ TEST(SurfaceMotion, AGrainBelowTheLimitsRocksAboutItsPlace)
   still.advance(0.0, period, 200);
   EXPECT_EQ(still.w(), 0.0);
   EXPECT_EQ(still.psi(), 0.0);
+}
+
+TEST(SurfaceMotion, LoadOnTheContactStiffensItsRolling)
+{
+  // s = 2 c (1 + sqrt(1 - g_n/c)): 8 c where it is pressed on with g_n = -8 c, 3 c where it is pulled with 3/4 c
+  for (const auto &[gn, stiffness] : {std::pair<double, double>{-8.0, 8.0}, {0.75, 3.0}}) {
+    OnAPlane grain(1.0, 0.15);
+    const double push = 0.1 * HOLD, s = stiffness * HOLD, half = M_PI * std::sqrt(7.0 * RD / (5.0 * s));
+    const double a[3] = {-push, 0.0, -gn * HOLD};
+    for (int k = 0; k < 400; k++) grain.motion.advance(a, NO_SPIN, half / 400);
+    EXPECT_NEAR(grain.psi(), 2.0 * push / s, 1e-4 * push / s);
+    EXPECT_NEAR(grain.w(), 0.0, 1e-3);
+  }
 }
 
 TEST(SurfaceMotion, RollingResistanceIsHeldAtThePivotsAngle)

@@ -353,21 +353,16 @@ def test_plugin_for_another_lammps_is_refused(tmp_path, front, words):
 
 
 def other_builds() -> list[Path]:
-    """Plugins that ./bootstrap built for another version than this build's, if it did."""
-    return [
-        p
-        for p in (
-            ROOT / "build" / "plugin" / PLUGIN.name,
-            ROOT / "build" / "4Feb2025" / "plugin" / PLUGIN.name,
-        )
-        if p.exists() and p != PLUGIN
-    ]
+    """Plugins that ./bootstrap built for another version or other sizes than this build's, if it did."""
+    builds = [ROOT / "build" / name for name in (".", "4Feb2025", "bigbig", "4Feb2025/bigbig")]
+    plugins = [(build / "plugin" / PLUGIN.name).resolve() for build in builds]
+    return [plugin for plugin in plugins if plugin.exists() and plugin != PLUGIN.resolve()]
 
 
 @pytest.mark.parametrize("other", other_builds(), ids=lambda p: p.parents[1].name)
-def test_real_plugin_of_the_other_version_is_refused(tmp_path, other):
+def test_real_plugin_of_another_build_is_refused(tmp_path, other):
     result = run(LMP, f"plugin load {other}\n" + 'print "END"\n', tmp_path)
-    assert_refused(result, tmp_path, "was compiled for LAMMPS", "and this is LAMMPS")
+    assert_refused(result, tmp_path, "was compiled for ")
 
 
 def test_refusal_is_an_exception_in_python(tmp_path):

@@ -568,3 +568,74 @@ TEST(DeckChecks, GrainsThatAreCrushed)
   const int bald = crushed(1.5e-3, 20e-6, 0.05, 8.0);    // of 4500 on the cap of 0.276 rad less that of 0.05
   EXPECT_NEAR(bald, 4500 * (std::cos(0.05) - std::cos(0.276)) / (1 + std::cos(0.05)), 15);
 }
+
+// the contact of a carrier with an atom that is none, such as a bead of a wall, counts as any other of its contacts
+TEST(DeckChecks, AtomsThatAreNoCarriers)
+{
+  const auto with = [](const std::string &model) {
+    Case c;
+    c.wall = "";
+    c.second = true;
+    c.pair += "\nset atom 2 type 2\npair_coeff 1 2 " + model;
+    return c;
+  };
+  for (const char *model : {"tsuji", "coeff_restitution/limited"}) {
+    Case c = with(steel("210e9", std::string("damping ") + model));
+    c.before = "group carriers type 1";
+    std::string text = commands(c);
+    text.replace(text.find("fix dust all"), 12, "fix dust carriers");
+    Deck deck;
+    const std::string name = "dust_no_carriers.txt";
+    deck("log " + name);
+    EXPECT_EQ(deck.attempt(text), "");
+    deck("log none");
+    std::ifstream file(name);
+    int found = 0;
+    for (std::string line; std::getline(file, line);)
+      found += line.find("pulls carrier 1") != std::string::npos && line.find("pair_coeff 1 2") != std::string::npos;
+    EXPECT_EQ(found, std::string(model) == "tsuji");
+    std::remove(name.c_str());
+  }
+}
+
+// each carrier has its turn: the one that is held is the second of the list, and both are pushed in the same steps
+TEST(DeckChecks, AHeldCarrierBehindOneThatIsFree)
+{
+  for (const char *hold : {"NULL NULL 0", "v_zero v_zero v_zero"}) {
+    Case c;
+    c.wall = "";
+    c.second = true;
+    c.after = std::string("variable zero equal 0\ngroup second id 2\nfix hold second setforce ") + hold;
+    expect_warning(c, {"carrier 2 does not move as its contact force says", "fix hold (setforce)"});
+  }
+}
+
+// softened contacts are named while a collision still lasts
+TEST(DeckChecks, SoftContactsOfACollisionThatLasts)
+{
+  Case c;
+  c.contacts(steel("210e6", LIMITED));
+  c.timestep = 1e-8;
+  c.steps = 1500;
+  expect_warning(c, {"1000 times softer", "stiffen 1000"});
+}
+
+// damping that has its own scale of time is not softened with the contact
+TEST(DeckChecks, StiffenWithDampingThatDoesNotFollow)
+{
+  for (const char *damping : {"velocity", "mass_velocity", "viscoelastic"}) {
+    Case c;
+    c.contacts(steel("210e7", std::string("damping ") + damping + " limit_damping"));
+    c.words = "stiffen 100";
+    expect_error(c, {"stiffen", damping, "coeff_restitution/limited"});
+  }
+}
+
+// the same ID again: LAMMPS has an empty place in its list meanwhile
+TEST(DeckChecks, AFixThatIsDefinedAgain)
+{
+  Case c;
+  c.after = "fix fall all gravity 9.81 vector 0 0 -1\nfix dust all dust/detach " + std::string(REFERENCE_DUST) +
+            " tangential estimate";
+  expect_silence(c, STIFF);
+}

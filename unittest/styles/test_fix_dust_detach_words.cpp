@@ -301,6 +301,17 @@ TEST(FixDustDetachWords, WrongInputIsNamed)
   EXPECT_NE(points.attempt("fix dust all dust/detach " + ok).find("radius"), std::string::npos);
 }
 
+// each carrier's orientation follows from its ID
+TEST(FixDustDetachWords, RandomOrientationNeedsIds)
+{
+  Deck deck;
+  deck("units si\natom_style sphere\natom_modify id no\nregion box block -4e-3 4e-3 -4e-3 4e-3 -4e-3 4e-3\n"
+       "create_box 1 box\ncreate_atoms 1 single 0 0 0\nset group all diameter 1.5e-3 density 7700");
+  EXPECT_NE(deck.attempt("fix dust all dust/detach " + std::string(REFERENCE_DUST) + " orientation random 5")
+                .find("orientation random needs atom IDs"),
+            std::string::npos);
+}
+
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);

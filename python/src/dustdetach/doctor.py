@@ -11,9 +11,10 @@ from typing import Any
 
 from .errors import DustError, LammpsMissing
 from .files import read_text, scratch_folder
-from .places import find_deck, find_plugin, lammps_library
+from .places import find_core, find_deck, find_plugin, lammps_library
 from .runner import DECKS
 from .session import FIX_STYLE, lammps_file, load_plugin, open_lammps
+from .texture import load_core
 from .version import __version__
 
 #: oldest LAMMPS with granular sub-models that this package is tested with
@@ -47,6 +48,11 @@ def examine() -> list[Finding]:
             findings += _lammps(lmp)
     except DustError as error:
         findings.append(Finding("LAMMPS", f"{error}", ok=False))
+    try:
+        load_core()
+        findings.append(Finding("texture files", f"{find_core()}, loads"))
+    except LammpsMissing as error:
+        findings.append(Finding("texture files", str(error), ok=False))
     try:
         folders = {find_deck(deck).parent for deck in DECKS.values()}
         findings.append(Finding("decks", ", ".join(sorted(map(str, folders)))))

@@ -173,8 +173,9 @@ def writable_file(path: Path, option: str) -> Path:
     """``path`` if a file can be written there.
 
     Raises:
-        InvalidInput: it is a folder, or its folder does not exist or cannot be written to.
+        InvalidInput: it is a folder or a device, or its folder does not exist or cannot be written to.
     """
+    check_file(path)
     if os.path.isdir(path):
         raise InvalidInput(f"{option}: {path} is a folder; allowed: the name of a file")
     if not os.path.isdir(path.parent):

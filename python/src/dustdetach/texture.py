@@ -139,7 +139,7 @@ def read_texture(path: str | Path) -> Texture:
     """
     path = as_path(path, "read_texture")
     check_file(path)
-    core = _core()
+    core = load_core()
     message = create_string_buffer(1024)
     texture = core.dust_texture_read(os.fsencode(path), message, len(message))
     if not texture:
@@ -160,8 +160,12 @@ _NUMBERS = POINTER(c_double)
 
 
 @cache
-def _core() -> CDLL:
-    """The core's functions for texture files, see ``src/core/texture_c.h``."""
+def load_core() -> CDLL:
+    """The core's functions for texture files, see ``src/core/texture_c.h``.
+
+    Raises:
+        LammpsMissing: the library is not there, or is another one.
+    """
     path = find_core()
     try:
         core = CDLL(str(path))
