@@ -33,15 +33,8 @@ void CreateDust::command(int narg, char **arg)
   if (narg < 3) utils::missing_cmd_args(FLERR, "create_dust", error);
   const int igroup = group->find(arg[0]);
   if (igroup < 0) error->all(FLERR, "Create_dust group {} does not exist", arg[0]);
-  if (strcmp(arg[1], "type") != 0) error->all(FLERR, "Create_dust wants the word type after the group, not {}", arg[1]);
-  const int type = utils::is_integer(arg[2]) ? utils::inumeric(FLERR, arg[2], false, lmp) : 0;
-  if (type < 1 || type > atom->ntypes)
-    error->all(FLERR, "Create_dust type {} must be from 1 to {}", arg[2], atom->ntypes);
-  if (domain->triclinic) error->all(FLERR, "Create_dust needs an orthogonal box");
-  if (!atom->tag_enable || !atom->omega_flag) error->all(FLERR, "Create_dust needs atoms with IDs and spin");
-
   DustOptions options(lmp, "Create_dust");
-  options.read(3, narg, arg);
+  read(narg, arg, options);
 
   const double carrier_radius = options.carrier_radius(igroup);
   if (carrier_radius == 0.0) error->all(FLERR, "Create_dust group {} has no carriers", arg[0]);
@@ -51,23 +44,59 @@ void CreateDust::command(int narg, char **arg)
   check_room(carriers, sites);
   warn_of_crushed_grains(texture, carriers, options, group->bitmask[igroup]);
   options.save(texture);
-  create(type, carriers, sites);
+  create(carriers, sites);
 }
+
+/* ---------------------------------------------------------------------- */
+
+void CreateDust::read(int narg, char **arg, DustOptions &options)
+{
+  if (strcmp(arg[1], "type") != 0) error->all(FLERR, "Create_dust wants the word type after the group, not {}", arg[1]);
+  first_type = utils::is_integer(arg[2]) ? utils::inumeric(FLERR, arg[2], false, lmp) : 0;
+  if (first_type < 1 || first_type > atom->ntypes)
+    error->all(FLERR, "Create_dust type {} must be from 1 to {}", arg[2], atom->ntypes);
+  if (domain->triclinic) error->all(FLERR, "Create_dust needs an orthogonal box");
+  if (!atom->tag_enable || !atom->omega_flag) error->all(FLERR, "Create_dust needs atoms with IDs and spin");
+
+  const auto take_classes = [this](Keywords &words) {
+    classes.number = words.whole_number(1, atom->ntypes - first_type + 1, "K");
+    classes.low = words.number(Range::above(0.0), "LOW");
+    classes.high = words.number(Range::above(classes.low), "HIGH");
+  };
+  options.read(3, narg, arg, {{"classes", take_classes}});
+}
+
+/* ---------------------------------------------------------------------- */
+
+int CreateDust::Classes::of(double factor) const
+{
+  const double place = number * std::log(factor / low) / std::log(high / low);
+  return static_cast<int>(std::clamp(std::floor(place), 0.0, number - 1.0));
+}
+
+double CreateDust::Classes::factor(int k) const { return low * std::pow(high / low, (k + 0.5) / number); }
 
 /* ----------------------------------------------------------------------
    where the grains of a texture rest on a carrier
 ------------------------------------------------------------------------- */
 
-std::vector<CreateDust::Site> CreateDust::sites_of(const Dust::Texture &texture, const DustOptions &options)
+std::vector<CreateDust::Site> CreateDust::sites_of(const Dust::Texture &texture, const DustOptions &options) const
 {
   std::vector<Site> sites;
   for (const Dust::Grain &grain : texture.grains) {
+    if (grain.adhesion != 1.0 && classes.number == 0)
+      error->all(FLERR,
+                 "Create_dust needs classes K LOW HIGH for grains with a spread of adhesion: an atom type for each "
+                 "class of pull-off forces");
     Site site;
+    const int k = classes.number ? classes.of(grain.adhesion) : 0;
+    const double gamma = options.surface_energy * (classes.number ? classes.factor(k) : 1.0);
+    site.type = first_type + k;
     MathExtra::copy3(grain.n, site.n);
     site.radius = grain.radius;
     site.mass = 4.0 / 3.0 * MathConst::MY_PI * MathSpecial::cube(grain.radius) * options.density;
     const double r12 = Dust::effective_radius(texture.carrier_radius, grain.radius);
-    const double a0 = Dust::equilibrium_contact_radius(options.surface_energy, r12, options.modulus());
+    const double a0 = Dust::equilibrium_contact_radius(gamma, r12, options.modulus());
     site.distance = texture.carrier_radius + grain.radius - Dust::equilibrium_overlap(a0, r12);
     sites.push_back(site);
   }
@@ -107,7 +136,7 @@ void CreateDust::check_room(const std::vector<Carrier> &carriers, const std::vec
 
 /* ---------------------------------------------------------------------- */
 
-void CreateDust::create(int type, const std::vector<Carrier> &carriers, const std::vector<Site> &sites)
+void CreateDust::create(const std::vector<Carrier> &carriers, const std::vector<Site> &sites)
 {
   tagint tag = DustAtoms::highest_tag(lmp);
   DustAtoms atoms(lmp);
@@ -119,7 +148,7 @@ void CreateDust::create(int type, const std::vector<Carrier> &carriers, const st
       MathExtra::add3(carrier.x, arm, x);
       MathExtra::cross3(carrier.omega, arm, v);
       MathExtra::add3(carrier.v, v, v);
-      atoms.create(type, tag, x, site.radius, site.mass, v, carrier.omega);
+      atoms.create(site.type, tag, x, site.radius, site.mass, v, carrier.omega);
     }
   const bigint made = atoms.finish();
   if (comm->me == 0) utils::logmesg(lmp, "Created {} grains on {} carriers\n", made, carriers.size());

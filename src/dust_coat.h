@@ -34,7 +34,7 @@ struct DustCoat {
     checksum = 0.0;
     int i = 0;
     for (const Dust::Grain &g : texture.grains)
-      checksum += std::cos(++i) * (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / radius);
+      checksum += std::cos(++i) * (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / radius + (g.adhesion - 1.0));
   }
 
   bool is_that_of(double file_checksum) const

@@ -4,6 +4,7 @@
 
 #include "dust_options.h"
 
+#include "core/adhesion_spread.h"
 #include "core/hamaker.h"
 #include "core/jkr.h"
 #include "core/texture_file.h"
@@ -69,7 +70,8 @@ Range plausible(double low, double high, const Dimension &of, const std::string 
 
 DustOptions::DustOptions(LAMMPS *_lmp, const std::string &_command) :
     Pointers(_lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, command(_command),
-    diameter(0.0), coverage(UNSET), distributed(false), sizes{}, seed(0), bare_given(false), orientation_seed(0)
+    diameter(0.0), coverage(UNSET), distributed(false), sizes{}, spread(1.0), seed(0), bare_given(false),
+    orientation_seed(0)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, "{} needs atoms with radius and mass of their own, such as atom_style sphere", command);
@@ -92,6 +94,7 @@ std::vector<Keyword> DustOptions::keywords()
       {"seed", [this](Keywords &words) { seed = words.whole_number(1, MAXSMALLINT); }},
       {"bare", [this](Keywords &words) { take_bare(words); }},
       {"distribution", [this](Keywords &words) { take_distribution(words); }},
+      {"spread", [this](Keywords &words) { spread = words.number(Range::from_to(1.0, Dust::MOST_SPREAD)); }},
       {"density",
        [this](Keywords &words) { density = words.number(plausible(10.0, 3e4, DENSITY, update->unit_style)); }},
       {"hamaker", [this](Keywords &words) { take_hamaker(words); }},
@@ -174,9 +177,11 @@ void DustOptions::take_distribution(Keywords &words)
 
 /* ---------------------------------------------------------------------- */
 
-void DustOptions::read(int first, int narg, char **arg)
+void DustOptions::read(int first, int narg, char **arg, const std::vector<Keyword> &own)
 {
-  Keywords(lmp, command, narg, arg).read(keywords(), first);
+  std::vector<Keyword> table = keywords();
+  table.insert(table.end(), own.begin(), own.end());
+  Keywords(lmp, command, narg, arg).read(table, first);
   complete();
 }
 
@@ -212,8 +217,9 @@ void DustOptions::share(Dust::Texture &texture) const
   int number = static_cast<int>(texture.grains.size());
   MPI_Bcast(&number, 1, MPI_INT, 0, world);
   texture.grains.resize(number);
-  static_assert(sizeof(Dust::Grain) == 4 * sizeof(double), "grains are sent as numbers");
-  MPI_Bcast(texture.grains.data(), 4 * number, MPI_DOUBLE, 0, world);
+  constexpr int EACH = sizeof(Dust::Grain) / sizeof(double);
+  static_assert(sizeof(Dust::Grain) == EACH * sizeof(double), "grains are sent as numbers");
+  MPI_Bcast(texture.grains.data(), EACH * number, MPI_DOUBLE, 0, world);
 }
 
 void DustOptions::read_file(const std::string &name)
@@ -234,8 +240,12 @@ void DustOptions::complete()
     if (coverage == UNSET) error->all(FLERR, "{} texture monolayer needs coverage", command);
     if (seed == 0) error->all(FLERR, "{} texture monolayer needs seed", command);
   } else {
-    const char *extra = coverage != UNSET ? "coverage" : seed ? "seed" : bare_given ? "bare" : "distribution";
-    if (coverage != UNSET || seed || bare_given || distributed)
+    const char *extra = coverage != UNSET ? "coverage"
+                        : seed            ? "seed"
+                        : bare_given      ? "bare"
+                        : distributed     ? "distribution"
+                                          : "spread";
+    if (coverage != UNSET || seed || bare_given || distributed || spread != 1.0)
       error->all(FLERR, "{} {} goes with texture monolayer: a texture file has its own grains", command, extra);
   }
   if (orientation_seed && !atom->tag_enable)
@@ -307,6 +317,7 @@ Dust::Texture DustOptions::texture(double radius) const
     on_one_rank("texture", [&]() {
       made = distributed ? Dust::place_monolayer(radius, sizes, coverage, bare, seed)
                          : Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
+      Dust::spread_adhesion(made, spread, seed);
     });
     share(made);
   }

@@ -22,8 +22,8 @@ class DustOptions : protected Pointers {
  public:
   DustOptions(class LAMMPS *, const std::string &command);
 
-  // reads the words from arg[first] on, of a command that has no keywords of its own
-  void read(int first, int narg, char **arg);
+  // reads the words from arg[first] on, of a command that has some of its own
+  void read(int first, int narg, char **arg, const std::vector<Keyword> &own);
 
   // diameter of the carriers of a group on all ranks, halved; 0 if there are none, an error if they differ
   double carrier_radius(int igroup) const;
@@ -56,6 +56,7 @@ class DustOptions : protected Pointers {
   double diameter, coverage;
   bool distributed;    // sizes instead of diameter
   Dust::SizeDistribution sizes;
+  double spread;    // geometric standard deviation of the pull-off forces of grains of a size
   int seed;
   Dust::BareCap bare;
   bool bare_given;

@@ -23,6 +23,7 @@ INTERFACE_KEYS = [
     "carrier_diameter",
     "hamaker",
     "z0",
+    "spread",
     "friction",
     "wall_friction",
     "grain_damping",

@@ -73,6 +73,7 @@ def test_mappings_that_are_none(values):
         ("z0", 1e-6, "1e-11 to 1e-07 m"),
         # 14.633e-20/(18 pi 10) = 1.609e-11 squared
         ("z0", 1.5e-11, "1.61e-11 to 1e-07 m for this Hamaker constant"),
+        ("spread", 0.9, "1 to 100"),
         ("friction", -0.1, "0 to 10"),
         ("wall_friction", -0.1, "0 to 10"),
         ("grain_damping", -1, "0 to 100"),

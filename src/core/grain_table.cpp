@@ -84,8 +84,9 @@ void GrainTable::fill_sites(const Texture &texture)
     const double r12 = effective_radius(rp, g.radius);
     Site &site = sites[bit];
     std::copy_n(g.n, 3, site.n);
-    site.hold = pull_off_force(matter.gamma, r12) / mass_of(g);
-    site.lever = equilibrium_contact_radius(matter.gamma, r12, matter.modulus) / g.radius;
+    const double gamma = matter.gamma * g.adhesion;    // F_c goes with it, a0 with its cube root
+    site.hold = pull_off_force(gamma, r12) / mass_of(g);
+    site.lever = equilibrium_contact_radius(gamma, r12, matter.modulus) / g.radius;
     site.shell = rp + g.radius;
     site.weight = mass_of(g) / mass;
     site.grain = order[bit];

@@ -50,8 +50,9 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
   for (const Grain &g : texture.grains) {
     const double mass = 4.0 / 3.0 * M_PI * g.radius * g.radius * g.radius * m.density;
     reach = std::max(reach, texture.carrier_radius + g.radius);
-    const double r12 = effective_radius(texture.carrier_radius, g.radius), hold = pull_off_force(m.gamma, r12) / mass;
-    const double lever = equilibrium_contact_radius(m.gamma, r12, m.modulus) / g.radius;
+    const double r12 = effective_radius(texture.carrier_radius, g.radius),
+                 hold = g.adhesion * pull_off_force(m.gamma, r12) / mass;
+    const double lever = equilibrium_contact_radius(g.adhesion * m.gamma, r12, m.modulus) / g.radius;
     least = std::min(least, hold);
     rolling = std::min(rolling, hold * lever / std::hypot(1.0, lever));
   }
@@ -108,7 +109,8 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
     const Vec n0 = turned({g.n[0], g.n[1], g.n[2]}, h.axis);
     const double mass = 4.0 / 3.0 * M_PI * g.radius * g.radius * g.radius * m.density;
     const double r12 = effective_radius(texture.carrier_radius, g.radius), r_pd = texture.carrier_radius + g.radius;
-    const double fc = pull_off_force(m.gamma, r12), a0 = equilibrium_contact_radius(m.gamma, r12, m.modulus);
+    const double fc = g.adhesion * pull_off_force(m.gamma, r12);
+    const double a0 = std::cbrt(g.adhesion) * equilibrium_contact_radius(m.gamma, r12, m.modulus);
     bool attached = true, slid = false, rolled = false;
     double largest = 0.0;
     Vec n = n0, mid = h.spin, angle = {0.0, 0.0, 0.0};    // mid: spin of the middle of the step before

@@ -2,6 +2,8 @@
 
 #include "collision.h"
 
+#include "adhesion_spread.h"
+
 #include "collision_reference.h"
 
 #include <gtest/gtest.h>
@@ -63,6 +65,29 @@ TEST(Collision, SameGrainsAsBruteForceForGrainsOfAllSizes)
     expect_same(by_collision(texture, table, h), by_brute_force(texture, m, Criteria(), h));
     if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
   }
+}
+
+TEST(Collision, SameGrainsAsBruteForceWithASpreadOfAdhesion)
+{
+  std::mt19937 random(3);
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  spread_adhesion(texture, 2.5, 2);
+  Material m = CALCITE;
+  m.gamma *= 64.0;
+  int left = 0;
+  for (int i = 0; i < 600; i++) {
+    Criteria criteria;
+    criteria.ibrahim = i % 4 == 3;
+    criteria.tangential = i % 7 == 5 ? Criteria::FRICTIONLESS : Criteria::ESTIMATE;
+    const GrainTable table(texture, m, criteria);
+    const History h = random_history(random, i % 2);
+    const Outcome expected = by_brute_force(texture, m, criteria, h);
+    expect_same(by_collision(texture, table, h), expected);
+    left += expected.left.size();
+    if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
+  }
+  EXPECT_GT(left, 600 * 20);
+  EXPECT_LT(left, 600 * 180);
 }
 
 TEST(Collision, ReferenceImpactsSameAsBruteForce)

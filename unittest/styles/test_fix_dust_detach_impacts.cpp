@@ -2,6 +2,8 @@
 
 #include "deck.h"
 
+#include "core/hamaker.h"
+#include "core/jkr.h"
 #include "core/texture_file.h"
 
 #include <algorithm>
@@ -75,6 +77,48 @@ TEST(FixDustDetachImpacts, WeakAndGrazingOnesEndByRebound)
     const Rebound held = rebound(0.7, 0.0, -1.0, "hamaker 14.633e-20 1e-10 tangential " + law);
     EXPECT_NEAR(held.vz, 0.7, 0.0035);
     EXPECT_NEAR(held.time, 4.765e-6, 0.02e-6);
+  }
+}
+
+TEST(FixDustDetachImpacts, ASpreadOfAdhesionReleasesWhatItsLogNormalSays)
+{
+  // straight, lift-off alone: a grain leaves when the largest acceleration, outward by its cosine, exceeds its own c.
+  // Averaged over the texture's directions; the scatter is that of as many grains on their own
+  const double gamma = Dust::surface_energy(std::sqrt(10.1e-20 * 21.2e-20), 0.4e-9);
+  const double c = Dust::pull_off_force(gamma, Dust::effective_radius(R, 10e-6)) / (4.0 / 3.0 * M_PI * 1e-15 * 2700.0);
+  for (double speed : {0.3, 1.0, 3.0})
+    for (double sigma_a : {1.2, 2.0, 4.0}) {
+      Deck deck;
+      set_up(deck, 0.7, 0.05, 0.0, -speed, line("tangential off spread %.17g write dust_spread.txt", sigma_a));
+      deck("variable finished equal f_dust[9]\nfix stop all halt 100 v_finished > 0 error continue message no\n"
+           "run 20000 post no");
+      const double peak = deck.columns(1)[DetachAtom::PEAK_ACCELERATION];
+      double expected = 0.0, variance = 0.0;
+      for (const Dust::Grain &grain : Dust::read_texture_file("dust_spread.txt").grains) {
+        const double load = -peak * grain.n[2] / c;
+        const double p = load > 0.0 ? 0.5 * std::erfc(-std::log(load) / (std::sqrt(2.0) * std::log(sigma_a))) : 0.0;
+        expected += p;
+        variance += p * (1.0 - p);
+      }
+      EXPECT_NEAR(deck.global(3), expected, 3.0 * std::sqrt(variance) + 0.5) << sigma_a << " at " << speed << " m/s";
+      EXPECT_EQ(deck.global(1), 4500.0);
+    }
+  std::remove("dust_spread.txt");
+}
+
+TEST(FixDustDetachImpacts, NoSpreadIsAsBefore)
+{
+  const auto left = [](const std::string &options) {
+    Deck deck;
+    set_up(deck, 0.7, 0.05, 2.0, -8.0, options);
+    deck("run 8000 post no");
+    std::vector<double> all = deck.vector();
+    for (const double x : deck.columns(1)) all.push_back(x);
+    return all;
+  };
+  for (const std::string law : {"impulse", "estimate", "integrate", "frictionless"}) {
+    EXPECT_EQ(left("spread 1 tangential " + law), left("tangential " + law));
+    EXPECT_NE(left("spread 1.1 tangential " + law), left("tangential " + law));
   }
 }
 

@@ -196,7 +196,7 @@ TEST(FixDustDetachWords, GrainsAreFinerThanTheirCarrier)
 
 TEST(FixDustDetachWords, WhatIsNotThereIsRefused)
 {
-  for (const std::string words : {"spread 1.5", "sizes 0.05", "meet yes", "inertia motion"}) {
+  for (const std::string words : {"sizes 0.05", "meet yes", "inertia motion"}) {
     const std::string message = error(REFERENCE_DUST + " " + words);
     EXPECT_NE(message.find("has no keyword " + words.substr(0, words.find(' '))), std::string::npos) << message;
   }
@@ -211,7 +211,7 @@ TEST(FixDustDetachWords, TexturesFromAFileBringTheirOwnGrains)
 {
   EXPECT_EQ(error("texture monolayer 20e-6 coverage 0.01 seed 1 write dust_words.txt"), "");
   EXPECT_EQ(error("texture file dust_words.txt"), "");
-  for (const std::string words : {"coverage 0.2", "seed 3", "bare 0.3", "distribution rrsb 20e-6 3"}) {
+  for (const std::string words : {"coverage 0.2", "seed 3", "bare 0.3", "distribution rrsb 20e-6 3", "spread 2"}) {
     const std::string message = error("texture file dust_words.txt " + words);
     EXPECT_NE(message.find(words.substr(0, words.find(' ')) + " goes with texture monolayer"), std::string::npos)
         << message;
@@ -274,6 +274,9 @@ TEST(FixDustDetachWords, WrongInputIsNamed)
   names(ok + "distribution normal 15e-6 1.5", "normal");
   names(ok + "distribution lognormal 15e-6 1", "distribution SIGMA_G value 1 must be above 1");
   names(ok + "distribution rrsb 0 3", "distribution");
+  names(ok + "spread", "spread");
+  names(ok + "spread 0.99", "spread value 0.99 must be from 1 to 100");
+  names(ok + "spread 101", "spread value 101 must be from 1 to 100");
   names(ok + "tangential sideways", "sideways");
   names(ok + "rolling -1", "rolling");
   names(ok + "damping -1", "damping");

@@ -60,6 +60,7 @@ _LABELS = {
     "carrier_diameter": ("$d_p$ = {:g} mm", 1e3),
     "hamaker": ("$A_{{12}}$ = {:g}·10$^{{-20}}$ J", 1e20),
     "z0": ("$z_0$ = {:g} nm", 1e9),
+    "spread": ("$\\sigma_a$ = {:g}", 1.0),
     "friction": ("$\\mu_f$ = {:g}", 1.0),
     "wall_friction": ("$\\mu_w$ = {:g}", 1.0),
     "grain_damping": ("$\\zeta$ = {:g}", 1.0),

@@ -33,6 +33,7 @@ _VARIABLES = (
     "carrier_diameter",
     "hamaker",
     "z0",
+    "spread",
     "friction",
     "wall_friction",
     "seed",
