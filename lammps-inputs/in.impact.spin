@@ -69,7 +69,8 @@ fix             dust all dust/detach texture monolayer ${grain_diameter} coverag
 
 # one line a grain: step, carrier, grain, mode (1 normal, 2 tangential), diameter, position, velocity
 if "$(is_defined(variable,events))" then "dump events all local 100 ${events} f_dust[1] f_dust[2] f_dust[3] &
-                f_dust[4] f_dust[5] f_dust[6] f_dust[7] f_dust[8] f_dust[9] f_dust[10] f_dust[11]"
+                f_dust[4] f_dust[5] f_dust[6] f_dust[7] f_dust[8] f_dust[9] f_dust[10] f_dust[11] &
+                f_dust[12]"
 
 # stop when the carrier has left the wall
 variable        finished equal f_dust[9]

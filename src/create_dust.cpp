@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 using namespace LAMMPS_NS;
 
@@ -36,15 +37,37 @@ void CreateDust::command(int narg, char **arg)
   DustOptions options(lmp, "Create_dust");
   read(narg, arg, options);
 
-  const double carrier_radius = options.carrier_radius(igroup);
-  if (carrier_radius == 0.0) error->all(FLERR, "Create_dust group {} has no carriers", arg[0]);
-  const Dust::Texture texture = options.texture(carrier_radius);
-  const std::vector<Site> sites = sites_of(texture, options);
   const std::vector<Carrier> carriers = all_carriers(group->bitmask[igroup], options);
-  check_room(carriers, sites);
-  warn_of_crushed_grains(texture, carriers, options, group->bitmask[igroup]);
-  options.save(texture);
-  create(carriers, sites);
+  if (carriers.empty()) error->all(FLERR, "Create_dust group {} has no carriers", arg[0]);
+  place(carriers, options);
+  check_room(carriers);
+  for (const Size &size : sizes) {
+    warn_of_crushed_grains(size, carriers, options);
+    options.save(size.texture, &size == &sizes.front());
+  }
+  create(carriers);
+}
+
+/* ----------------------------------------------------------------------
+   a texture for each size of carriers
+------------------------------------------------------------------------- */
+
+void CreateDust::place(const std::vector<Carrier> &carriers, const DustOptions &options)
+{
+  std::vector<double> radii;
+  for (const Carrier &carrier : carriers) radii.push_back(carrier.radius);
+  std::sort(radii.begin(), radii.end(), std::greater<>());
+  for (const double radius : radii) {
+    if (!sizes.empty() && DustOptions::same_size(radius, sizes.back().radius)) continue;
+    const Dust::Texture texture = options.texture(radius);
+    sizes.push_back({radius, texture, sites_of(texture, options)});
+  }
+}
+
+const CreateDust::Size &CreateDust::size_of(const Carrier &carrier) const
+{
+  return *std::find_if(sizes.begin(), sizes.end(),
+                       [&](const Size &size) { return DustOptions::same_size(carrier.radius, size.radius); });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -114,14 +137,15 @@ void CreateDust::arm_of(const Carrier &carrier, const Site &site, double *arm)
    before the first grain is made: all of them can be, or there are none
 ------------------------------------------------------------------------- */
 
-void CreateDust::check_room(const std::vector<Carrier> &carriers, const std::vector<Site> &sites) const
+void CreateDust::check_room(const std::vector<Carrier> &carriers) const
 {
-  const double wanted = double(sites.size()) * double(carriers.size());
+  double wanted = 0.0;
+  for (const Carrier &carrier : carriers) wanted += double(size_of(carrier).sites.size());
   if (double(DustAtoms::highest_tag(lmp)) + wanted >= double(MAXTAGINT))
     error->all(FLERR, "Create_dust makes more atoms than LAMMPS has IDs for");
   bigint outside = 0;
   for (const Carrier &carrier : carriers)
-    for (const Site &site : sites) {
+    for (const Site &site : size_of(carrier).sites) {
       double x[3];
       arm_of(carrier, site, x);
       MathExtra::add3(carrier.x, x, x);
@@ -136,12 +160,12 @@ void CreateDust::check_room(const std::vector<Carrier> &carriers, const std::vec
 
 /* ---------------------------------------------------------------------- */
 
-void CreateDust::create(const std::vector<Carrier> &carriers, const std::vector<Site> &sites)
+void CreateDust::create(const std::vector<Carrier> &carriers)
 {
   tagint tag = DustAtoms::highest_tag(lmp);
   DustAtoms atoms(lmp);
   for (const Carrier &carrier : carriers)
-    for (const Site &site : sites) {
+    for (const Site &site : size_of(carrier).sites) {
       tag++;    // the same ID on any number of ranks
       double arm[3], x[3], v[3];
       arm_of(carrier, site, arm);
@@ -161,7 +185,7 @@ void CreateDust::create(const std::vector<Carrier> &carriers, const std::vector<
 std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const DustOptions &options) const
 {
   struct Numbers {
-    double tag, x[3], v[3], omega[3];
+    double tag, x[3], v[3], omega[3], radius, mass;
   };
   std::vector<Numbers> mine;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -171,13 +195,15 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const Du
     MathExtra::copy3(atom->x[i], n.x);
     MathExtra::copy3(atom->v[i], n.v);
     MathExtra::copy3(atom->omega[i], n.omega);
+    n.radius = options.carrier_radius(i);
+    n.mass = atom->rmass[i];
     mine.push_back(n);
   }
   std::vector<Numbers> all = dust_gather(mine, ALL_RANKS, world);
   std::sort(all.begin(), all.end(), [](const Numbers &a, const Numbers &b) { return a.tag < b.tag; });
   std::vector<Carrier> carriers;
   for (const Numbers &n : all) {
-    Carrier carrier = {{}, {}, {}, options.orientation(static_cast<tagint>(n.tag))};
+    Carrier carrier = {{}, {}, {}, n.radius, n.mass, options.orientation(static_cast<tagint>(n.tag))};
     MathExtra::copy3(n.x, carrier.x);
     MathExtra::copy3(n.v, carrier.v);
     MathExtra::copy3(n.omega, carrier.omega);
@@ -192,18 +218,19 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const Du
    not known where textures lie at random.
 ------------------------------------------------------------------------- */
 
-void CreateDust::warn_of_crushed_grains(const Dust::Texture &texture, const std::vector<Carrier> &carriers,
-                                        const DustOptions &options, int groupbit) const
+void CreateDust::warn_of_crushed_grains(const Size &size, const std::vector<Carrier> &carriers,
+                                        const DustOptions &options) const
 {
   if (!options.same_orientation()) return;
+  const Dust::Texture &texture = size.texture;
   const double R = texture.carrier_radius, E = options.elastic[2], nu = options.elastic[3];
   const double *axis = texture.bare.axis;
-  double speed = 0.0;
-  for (const Carrier &c : carriers) speed = std::max(speed, MathExtra::dot3(c.v, axis));
-  double mass = 0.0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit) mass = std::max(mass, atom->rmass[i]);
-  MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPI_DOUBLE, MPI_MAX, world);
+  double speed = 0.0, mass = 0.0;
+  for (const Carrier &carrier : carriers) {
+    if (&size_of(carrier) != &size) continue;
+    speed = std::max(speed, MathExtra::dot3(carrier.v, axis));
+    mass = std::max(mass, carrier.mass);
+  }
   const double overlap = Dust::hertz_overlap(Dust::combined_modulus(E, nu, E, nu), R, mass, speed);
 
   int crushed = 0;

@@ -39,19 +39,26 @@ class CreateDust : public Command {
     double factor(int k) const;      // in the middle of the class
   };
   struct Carrier {
-    double x[3], v[3], omega[3];
+    double x[3], v[3], omega[3], radius, mass;
     Dust::Quaternion orientation;
   };
+  struct Size {    // of carriers: its texture on them
+    double radius;
+    Dust::Texture texture;
+    std::vector<Site> sites;
+  };
+  std::vector<Size> sizes;    // from large to small
+  const Size &size_of(const Carrier &) const;
+  void place(const std::vector<Carrier> &, const class DustOptions &);
   Classes classes;
   int first_type;
   void read(int narg, char **arg, class DustOptions &);
   std::vector<Site> sites_of(const Dust::Texture &, const class DustOptions &) const;
   static void arm_of(const Carrier &, const Site &, double *);
   std::vector<Carrier> all_carriers(int groupbit, const DustOptions &) const;
-  void check_room(const std::vector<Carrier> &, const std::vector<Site> &) const;
-  void create(const std::vector<Carrier> &, const std::vector<Site> &);
-  void warn_of_crushed_grains(const Dust::Texture &, const std::vector<Carrier> &, const class DustOptions &,
-                              int groupbit) const;
+  void check_room(const std::vector<Carrier> &) const;
+  void create(const std::vector<Carrier> &);
+  void warn_of_crushed_grains(const Size &, const std::vector<Carrier> &, const class DustOptions &) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -38,7 +38,7 @@ enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, SIZE };
 
 // columns of the local array
 namespace DetachRow {
-enum { STEP, CARRIER, GRAIN, MODE, DIAMETER, X, Y, Z, VX, VY, VZ, SIZE };
+enum { STEP, CARRIER, GRAIN, MODE, DIAMETER, X, Y, Z, VX, VY, VZ, TEXTURE, SIZE };
 }
 
 }    // namespace LAMMPS_NS

@@ -21,6 +21,7 @@ DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
     rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), lose_mass(false), emit(0),
     weightless(false)
 {
+  class_width = 0.05;
   constexpr int FIRST = 3;    // after ID, group and style
   Keywords(lmp, command, narg, arg).read(keywords(), FIRST);
   complete();
@@ -39,6 +40,7 @@ std::vector<Keyword> DetachSettings::keywords()
 {
   std::vector<Keyword> table = DustOptions::keywords();
   const std::vector<Keyword> own = {
+      {"sizes", [this](Keywords &words) { class_width = words.number(Range::from_to(0.0, 1.0)); }},
       {"friction", [this](Keywords &words) { friction = words.number(Range::at_least(0.0)); }},
       {"rolling", [this](Keywords &words) { rolling = words.number(Range::from_to(0.0, 3.15)); }},
       {"damping", [this](Keywords &words) { damping = words.number(Range::at_least(0.0)); }},

@@ -69,9 +69,9 @@ Range plausible(double low, double high, const Dimension &of, const std::string 
 /* ---------------------------------------------------------------------- */
 
 DustOptions::DustOptions(LAMMPS *_lmp, const std::string &_command) :
-    Pointers(_lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, command(_command),
-    diameter(0.0), coverage(UNSET), distributed(false), sizes{}, spread(1.0), seed(0), bare_given(false),
-    orientation_seed(0)
+    Pointers(_lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, class_width(0.0),
+    command(_command), diameter(0.0), coverage(UNSET), distributed(false), sizes{}, spread(1.0), seed(0),
+    bare_given(false), orientation_seed(0)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, "{} needs atoms with radius and mass of their own, such as atom_style sphere", command);
@@ -89,7 +89,7 @@ DustOptions::DustOptions(LAMMPS *_lmp, const std::string &_command) :
 std::vector<Keyword> DustOptions::keywords()
 {
   return {
-      {"texture", [this](Keywords &words) { take_texture(words); }},
+      {"texture", [this](Keywords &words) { take_texture(words); }, true},
       {"coverage", [this](Keywords &words) { coverage = words.number(Range::above(0.0)); }},
       {"seed", [this](Keywords &words) { seed = words.whole_number(1, MAXSMALLINT); }},
       {"bare", [this](Keywords &words) { take_bare(words); }},
@@ -117,7 +117,9 @@ std::vector<Keyword> DustOptions::keywords()
 
 void DustOptions::take_texture(Keywords &words)
 {
-  if (words.one_of({"file", "monolayer"}, "SOURCE") == 0)
+  const bool again = from_file() || diameter != 0.0, is_file = words.one_of({"file", "monolayer"}, "SOURCE") == 0;
+  if (again && !(is_file && from_file())) words.refuse("is given twice: only texture file may be, for a size each");
+  if (is_file)
     read_file(words.word("the name of a file"));
   else
     diameter = words.number(Range::above(0.0), "DIAMETER");
@@ -224,9 +226,14 @@ void DustOptions::share(Dust::Texture &texture) const
 
 void DustOptions::read_file(const std::string &name)
 {
-  file = name;
-  on_one_rank("texture file " + file, [this]() { from_file = Dust::read_texture_file(file); });
-  share(from_file);
+  Dust::Texture read;
+  on_one_rank("texture file " + name, [&]() { read = Dust::read_texture_file(name); });
+  share(read);
+  for (const File &other : files)
+    if (same_size(other.texture.carrier_radius, read.carrier_radius))
+      error->all(FLERR, "{} texture files {} and {} are both for carriers of diameter {}", command, other.name, name,
+                 2.0 * read.carrier_radius);
+  files.push_back({name, read});
 }
 
 /* ----------------------------------------------------------------------
@@ -235,7 +242,7 @@ void DustOptions::read_file(const std::string &name)
 
 void DustOptions::complete()
 {
-  if (file.empty()) {
+  if (!from_file()) {
     if (diameter == 0.0) error->all(FLERR, "{} needs keyword texture", command);
     if (coverage == UNSET) error->all(FLERR, "{} texture monolayer needs coverage", command);
     if (seed == 0) error->all(FLERR, "{} texture monolayer needs seed", command);
@@ -286,34 +293,38 @@ bool DustOptions::same_size(double radius, double other) { return std::fabs(radi
 
 /* ---------------------------------------------------------------------- */
 
-double DustOptions::carrier_radius(int igroup) const
+double DustOptions::carrier_radius(int i) const
 {
-  double extremes[2] = {0.0, 0.0};    // of radius and 1/radius: absent carriers change neither
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & group->bitmask[igroup])) continue;
-    const double radius = atom->radius[i];
-    if (!(radius > 0.0))
-      error->one(FLERR, "{} carrier {} has radius {}: it must be above 0", command, atom->tag[i], radius);
-    extremes[0] = std::max(extremes[0], radius);
-    extremes[1] = std::max(extremes[1], 1.0 / radius);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPI_DOUBLE, MPI_MAX, world);
-  if (extremes[0] == 0.0) return 0.0;
-  const double largest = extremes[0], least = 1.0 / extremes[1];
-  if (!same_size(least, largest))
-    error->all(FLERR,
-               "{} group {} has carriers of diameter {} to {}: one texture serves one size, use a group and a command "
-               "for each",
-               command, group->names[igroup], 2.0 * least, 2.0 * largest);
-  return largest;
+  const double radius = atom->radius[i];
+  if (!(radius > 0.0))
+    error->one(FLERR, "{} carrier {} has radius {}: it must be above 0", command, atom->tag[i], radius);
+  return radius;
+}
+
+/* ----------------------------------------------------------------------
+   the nearest in ln R
+------------------------------------------------------------------------- */
+
+int DustOptions::file_for(double radius) const
+{
+  const auto distance = [=](const File &file) { return std::fabs(std::log(file.texture.carrier_radius / radius)); };
+  const auto nearest = std::min_element(files.begin(), files.end(),
+                                        [&](const File &a, const File &b) { return distance(a) < distance(b); });
+  const double size = nearest->texture.carrier_radius;
+  if (!same_size(size, radius) && distance(*nearest) > std::log1p(class_width))
+    error->one(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, nearest->name, 2.0 * size,
+               2.0 * radius);
+  return static_cast<int>(nearest - files.begin());
 }
 
 /* ---------------------------------------------------------------------- */
 
 Dust::Texture DustOptions::texture(double radius) const
 {
-  Dust::Texture made = from_file;
-  if (file.empty()) {
+  Dust::Texture made;
+  if (from_file()) {
+    made = files[file_for(radius)].texture;
+  } else {
     on_one_rank("texture", [&]() {
       made = distributed ? Dust::place_monolayer(radius, sizes, coverage, bare, seed)
                          : Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
@@ -321,9 +332,6 @@ Dust::Texture DustOptions::texture(double radius) const
     });
     share(made);
   }
-  if (!same_size(made.carrier_radius, radius))
-    error->all(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, file,
-               2.0 * made.carrier_radius, 2.0 * radius);
   check_plausible(made);
   return made;
 }
@@ -354,7 +362,15 @@ void DustOptions::check_plausible(const Dust::Texture &texture) const
 
 /* ---------------------------------------------------------------------- */
 
-void DustOptions::save(const Dust::Texture &texture) const
+void DustOptions::save(const Dust::Texture &texture, bool first) const
 {
-  if (!write.empty()) on_one_rank("write " + write, [&]() { Dust::write_texture_file(texture, write); });
+  if (write.empty()) return;
+  std::string name = write;
+  const size_t star = name.find('*');
+  if (star != std::string::npos)
+    name.replace(star, 1, fmt::format("{:.9g}", 2.0 * texture.carrier_radius));
+  else if (!first)
+    error->all(FLERR, "{} write {} needs a * where the diameter goes: there are carriers of several sizes", command,
+               write);
+  on_one_rank("write " + name, [&]() { Dust::write_texture_file(texture, name); });
 }

@@ -65,17 +65,18 @@ class FixDustDetach : public Fix {
  private:
   DetachSettings settings;
   DeckChecks checks;
-  DeckChecks::Course course_of(const Dust::Collision &) const;
+  DeckChecks::Course course_of(int) const;    // the collision of a carrier
 
-  DustCoat coat;
-  void build();
-
+  DustCoats coats;
   CarrierData carriers;
+  const Dust::GrainTable &table_of(int i) const { return coats.table(carriers.coat[i]); }
   static constexpr int NO_CARRIER = CarrierData::NO_CARRIER, FREE_FLIGHT = CarrierData::FREE_FLIGHT,
                        AT_REST = CarrierData::AT_REST;
   double steps;      // since the fix is there
   bool newcomers;    // atoms were added that may be carriers
+  bool is_newcomer(int) const;
   void adopt();
+  void adopt(int);
   void weigh();
 
   // collisions under way on this rank
@@ -106,7 +107,7 @@ class FixDustDetach : public Fix {
   void share_exchange_room();
   int fixed_size() const;
   int packed_size(int) const;
-  static constexpr int NEWCOMER = -1;    // in what an atom that is no carrier takes along
+  enum { NEWCOMER = -1, NO_DATA = 0, CARRIER = 1 };    // what an atom takes along
   void pack(int, bool, Dust::Packer &) const;
   int pack_with_size(int, bool, double *) const;
   void unpack(int, const double *);

@@ -381,8 +381,8 @@ TEST(CreateDust, WrongInputIsNamed)
   for (const char *word : {"friction 0.3", "tangential off", "emit 2", "colour red"})
     names(ok + " " + word, std::string("Create_dust has no keyword ") +
                                std::string(word).substr(0, std::string(word).find(' ')) +
-                               ": use texture, coverage, seed, bare, distribution, density, hamaker, surface, elastic, "
-                               "orientation or write");
+                               ": use texture, coverage, seed, bare, distribution, spread, density, hamaker, surface, "
+                               "elastic, orientation, write or classes");
   // the lowest grains would be below the box, which ends at -2 mm
   const std::string message = error(ok, "set atom 1 z -0.0013");
   EXPECT_NE(message.find("grains would lie outside the box"), std::string::npos) << message;

@@ -572,21 +572,6 @@ TEST(FixDustDetach, CarriersResizedOrDeletedBetweenRuns)
   EXPECT_NE(deck.attempt("run 10").find("diameter"), std::string::npos);
 }
 
-TEST(FixDustDetach, CarriersOfTwoSizesNeedTwoFixes)
-{
-  Deck deck;
-  deck.box();
-  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
-  deck.carrier(0.004, 0.0, START, 0.0, 0.0, -8.0);
-  deck("set atom 2 diameter 1.4e-3 density 7700");
-  deck.wall_and_motion();
-  EXPECT_NE(deck.attempt("fix dust all dust/detach " + REFERENCE_DUST).find("one size"), std::string::npos);
-  deck("group large id 1\ngroup small id 2");
-  dust(deck, "", "large");
-  deck("fix fine small dust/detach " + REFERENCE_DUST + "\nrun 5000 post no");
-  EXPECT_EQ(deck.global(9), 1.0);
-}
-
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);

@@ -196,7 +196,7 @@ TEST(FixDustDetachWords, GrainsAreFinerThanTheirCarrier)
 
 TEST(FixDustDetachWords, WhatIsNotThereIsRefused)
 {
-  for (const std::string words : {"sizes 0.05", "meet yes", "inertia motion"}) {
+  for (const std::string words : {"meet yes", "inertia motion"}) {
     const std::string message = error(REFERENCE_DUST + " " + words);
     EXPECT_NE(message.find("has no keyword " + words.substr(0, words.find(' '))), std::string::npos) << message;
   }
@@ -274,6 +274,10 @@ TEST(FixDustDetachWords, WrongInputIsNamed)
   names(ok + "distribution normal 15e-6 1.5", "normal");
   names(ok + "distribution lognormal 15e-6 1", "distribution SIGMA_G value 1 must be above 1");
   names(ok + "distribution rrsb 0 3", "distribution");
+  names(ok + "sizes", "sizes");
+  names(ok + "sizes -0.01", "sizes value -0.01 must be from 0 to 1");
+  names(ok + "sizes 1.1", "sizes value 1.1 must be from 0 to 1");
+  names(ok + "texture file x", "texture is given twice");
   names(ok + "spread", "spread");
   names(ok + "spread 0.99", "spread value 0.99 must be from 1 to 100");
   names(ok + "spread 101", "spread value 101 must be from 1 to 100");

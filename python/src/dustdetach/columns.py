@@ -54,6 +54,7 @@ class DetachRow(IntEnum):
     VX = 8
     VY = 9
     VZ = 10
+    TEXTURE = 11
 
 
 @unique
