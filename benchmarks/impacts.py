@@ -36,9 +36,8 @@ HERE = Path(__file__).resolve().parent / "impacts"
 # where a table's cases have their partners: a case and its variant differ in this parameter alone
 VARIANTS = {"seeds": "seed", "timestep": "timestep"}
 DAMPINGS = (1.0, 0.2, 0.06)
-# these lists run to the deck's own limit; the others, to save hours, to this one (s): the ratio is final before 10 us
-MAIN = ("straight", "oblique")
-EARLIER = "20e-6"
+LIMIT = "20e-6"  # of resolved runs (s), where the deck has 50 us: the ratio is final before 10 us
+OTHERS = "others"  # the list that is not of the reference case
 LAWS = ("impulse", "estimate", "integrate")
 
 Pair = tuple[Result, Result]
@@ -63,7 +62,7 @@ def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
     for name in names:
         print(name, flush=True)
         cases = read_cases(HERE / f"{name}.toml")
-        os.environ["DUSTDETACH_INPUTS"] = str(decks(work / "decks", name))
+        os.environ["DUSTDETACH_INPUTS"] = str(decks(work / "decks"))
         rows = sweep([replace(case, tangential=law) for case in cases for law in LAWS], work / name, jobs=jobs)
         kept = HERE / f"{name}.csv"
         if functions:
@@ -74,16 +73,14 @@ def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
         write_csv(kept, sorted(rows, key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())))
 
 
-def decks(folder: Path, name: str) -> Path:
-    """The decks as they are for the main lists, with an earlier end for the others."""
+def decks(folder: Path) -> Path:
+    """The decks with an earlier end."""
     inputs = HERE.parents[1] / "lammps-inputs"
-    if name in MAIN:
-        return inputs
     folder.mkdir(parents=True, exist_ok=True)
     for deck in inputs.glob("in.*"):
         text = re.sub(
             r"^(variable limit +index )50e-6",
-            rf"\g<1>{EARLIER}",
+            rf"\g<1>{LIMIT}",
             deck.read_text(),
             flags=re.MULTILINE,
         )
@@ -113,8 +110,9 @@ def pairs(rows: Iterable[Result], law: str) -> list[Pair]:
     return [(functions[key(row)], row) for row in rows if row.method == "resolved" and key(row) in functions]
 
 
-def all_rows(data: dict[str, list[Result]]) -> list[Result]:
-    return unique(row for part in data.values() for row in part)
+def reference_rows(data: dict[str, list[Result]]) -> list[Result]:
+    """Of the reference case, of all lists."""
+    return unique(row for name, part in data.items() if name != OTHERS for row in part)
 
 
 def unique(rows: Iterable[Result]) -> list[Result]:
@@ -145,8 +143,9 @@ def agreement(label: str, compared: list[Pair]) -> list[object]:
     return [*row, f"{worst.speed:g} m/s, {worst.angle:g}°, e {worst.restitution:g}"]
 
 
-def groups(rows: list[Result], law: str) -> Iterator[tuple[str, list[Pair]]]:
+def groups(data: dict[str, list[Result]], law: str) -> Iterator[tuple[str, list[Pair]]]:
     """Kinds of impacts and their pairs."""
+    rows = reference_rows(data)
     for damping in DAMPINGS:
         damped = pairs((row for row in rows if row.grain_damping == damping and row.wall_friction == 0.05), law)
         straight = [pair for pair in damped if pair[0].angle == 90]
@@ -156,31 +155,33 @@ def groups(rows: list[Result], law: str) -> Iterator[tuple[str, list[Pair]]]:
             yield "... with other seeds and half time steps", straight
         yield f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]
     rough = pairs((row for row in rows if row.wall_friction == 0.3), law)
-    yield "oblique, zeta 1, wall friction 0.3", [pair for pair in rough if pair[0].angle != 90]
+    yield "wall friction 0.3, zeta 1", rough
+    yield "other carriers, grains, walls", pairs(data[OTHERS], law)
 
 
-def agreements(rows: list[Result]) -> Iterator[list[str]]:
+def agreements(data: dict[str, list[Result]]) -> Iterator[list[str]]:
     """Mean and largest difference by each law, for the documentation."""
     names = ("ratio", "south", "north")
     yield ["impacts", "cases", "law", *(cell for name in names for cell in (f"{name}: mean", "largest"))]
-    for kinds in zip(*(groups(rows, law) for law in LAWS), strict=True):
+    for kinds in zip(*(groups(data, law) for law in LAWS), strict=True):
         for law, (kind, compared) in zip(LAWS, kinds, strict=True):
             cells = [f"{cell:.4f}" for cell in agreement(kind, compared)[2:-1] if isinstance(cell, float)]
             yield [*((kind, str(len(compared))) if law == LAWS[0] else ("", "")), law, *cells]
 
 
 def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
-    rows = all_rows(data)
+    rows = reference_rows(data)
     plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
     smooth = [row for row in plain if row.wall_friction == 0.05]
 
     yield "# Detachment functions against grain-resolved runs"
     yield ""
-    resolved = [row for row in rows if row.method == "resolved"]
+    resolved = [row for row in [*rows, *data[OTHERS]] if row.method == "resolved"]
     ends = {end: sum(row.end == end for row in resolved) for end in sorted({row.end for row in resolved})}
     version = resolved[0].lammps_version
     ended = ", ".join(f"*{end}*: {count}" for end, count in ends.items())
-    yield f"{len(resolved)} resolved impacts of {resolved[0].grains} grains, LAMMPS {version}; ended by {ended}."
+    yield f"{len(resolved)} resolved impacts, LAMMPS {version}, in the reference case of {rows[0].grains} grains."
+    yield f"They stop at {float(LIMIT) * 1e6:g} us at the latest; ended by {ended}."
     yield "Written by `impacts.py compare`."
     yield ""
 
@@ -194,7 +195,7 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     for law in LAWS:
         yield f"`tangential {law}`:"
         yield ""
-        yield from table([*head, "largest at"], [agreement(*group) for group in groups(rows, law)])
+        yield from table([*head, "largest at"], [agreement(*group) for group in groups(data, law)])
     yield "## What the paper says"
     yield ""
     yield from paper([row for row in smooth if row.method == "resolved" and row.grain_damping == 1])
@@ -212,6 +213,9 @@ def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
     rough = [row for row in plain if row.wall_friction == 0.3]
     yield from cases(rough)
     yield from best_angle(rough)
+    yield "## Other carriers, grains, adhesion, friction and restitution"
+    yield ""
+    yield from others(data[OTHERS])
     yield "## Other influences"
     yield ""
     yield (
@@ -298,6 +302,20 @@ def cases(rows: list[Result]) -> Iterator[str]:
     yield from table(["e", "angle", "v (m/s)", *LAWS, "resolved", *names, "end", "s"], lines)
 
 
+def others(rows: list[Result]) -> Iterator[str]:
+    compared = {law: {key(r): f for f, r in pairs(rows, law)} for law in LAWS}
+    lines = []
+    for r in (row for row in rows if row.method == "resolved"):
+        of_law = [compared[law][key(r)] for law in LAWS]
+        sizes = [f"{r.carrier_diameter * 1e3:g}", f"{r.grain_diameter * 1e6:g}", f"{r.hamaker:g}", f"{r.friction:g}"]
+        impact = [f"{r.wall_friction:g}", f"{r.restitution:g}", f"{r.angle:g}", f"{r.speed:g}"]
+        halves = [of_law[0].south, r.south, of_law[0].north, r.north]
+        lines.append([*sizes, *impact, *(f.dispersion_ratio for f in of_law), r.dispersion_ratio, *halves])
+    names = [f"{half} {who}" for half in ("south", "north") for who in (LAWS[0], "resolved")]
+    head = ["carrier (mm)", "grains (um)", "A (J)", "mu_f", "wall mu", "e", "angle", "v (m/s)"]
+    yield from table([*head, *LAWS, "resolved", *names], lines)
+
+
 def dampings(smooth: list[Result]) -> Iterator[str]:
     laws = [law for law in LAWS if law != "estimate"]
     followed = {key(r): f for f, r in pairs(smooth, laws[1])}
@@ -360,7 +378,7 @@ def variants(resolved: list[Result], plain: list[Result], parameter: str) -> Ite
 
 # --- the figures -----------------------------------------------------------------------------------------
 def figures(data: dict[str, list[Result]]) -> None:
-    rows = all_rows(data)
+    rows = reference_rows(data)
     plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
     damped = [row for row in plain if row.grain_damping == 1]
     smooth = [row for row in damped if row.wall_friction == 0.05]
@@ -447,7 +465,7 @@ def main() -> None:
         data = tables()
         (HERE / "comparison.md").write_text("\n".join(comparison(data)))
         with (HERE / "agreement.csv").open("w", newline="") as stream:
-            csv.writer(stream, lineterminator="\n").writerows(agreements(all_rows(data)))
+            csv.writer(stream, lineterminator="\n").writerows(agreements(data))
         figures(data)
 
 

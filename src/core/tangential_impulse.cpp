@@ -74,7 +74,7 @@ class Impulse {
         return;
       }
       Release release = {bit, {}, {}, 0.0};
-      if (leaves(site, slide, release)) released.push_back(release);
+      if (leaves(site, slide, located, release)) released.push_back(release);
     });
   }
 
@@ -172,11 +172,11 @@ class Impulse {
     return std::min(sliding, rolling) / slip;
   }
 
-  // whether it leaves, where and with which velocity
-  bool leaves(const GrainTable::Site &site, const Slide &slide, Release &release) const
+  // whether it leaves, and when, where and with which velocity
+  bool leaves(const GrainTable::Site &site, const Slide &slide, bool located, Release &release) const
   {
     const double most2 = std::max(dot(slide.after, slide.after), dot(slide.before, slide.before));
-    if (may_come_round(slide.dvn, most2, site.shell))
+    if (located || may_come_round(slide.dvn, most2, site.shell))
       for (const Phase &phase : PHASES)
         if (leaves(site, slide, phase, site.hold, release)) return true;
     return leaves(site, slide, PHASES.back(), slide.hold_at_end, release);
