@@ -14,16 +14,17 @@
 using namespace LAMMPS_NS;
 
 CarrierData::CarrierData(LAMMPS *_lmp, bool rotation, bool orientations, int motion) :
-    Pointers(_lmp), state(nullptr), attached(nullptr), orientation(nullptr), angle(nullptr), window_mass(nullptr),
-    before(nullptr), began(nullptr), columns(nullptr), angle_used(rotation), orientation_used(orientations),
-    motion_size(motion), words(0)
+    Pointers(_lmp), state(nullptr), coat(nullptr), radius(nullptr), orientation(nullptr), angle(nullptr),
+    window_mass(nullptr), before(nullptr), began(nullptr), columns(nullptr), angle_used(rotation),
+    orientation_used(orientations), motion_size(motion)
 {
 }
 
 CarrierData::~CarrierData()
 {
   memory->destroy(state);
-  memory->destroy(attached);
+  memory->destroy(coat);
+  memory->destroy(radius);
   memory->destroy(orientation);
   memory->destroy(angle);
   memory->destroy(window_mass);
@@ -34,40 +35,40 @@ CarrierData::~CarrierData()
 
 /* ---------------------------------------------------------------------- */
 
-void CarrierData::set_words(int n)
-{
-  words = n;
-  memory->destroy(attached);
-  memory->grow(attached, atom->nmax, words, "dust/detach:attached");
-}
-
 void CarrierData::grow(int nmax)
 {
   memory->grow(state, nmax, "dust/detach:state");
+  memory->grow(coat, nmax, "dust/detach:coat");
+  memory->grow(radius, nmax, "dust/detach:radius");
+  attached.resize(nmax);
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
   memory->grow(began, nmax, "dust/detach:began");
   memory->grow(columns, nmax, DetachAtom::SIZE, "dust/detach:array_atom");
   if (orientation_used) memory->grow(orientation, nmax, "dust/detach:orientation");
   if (angle_used) memory->grow(angle, nmax, 3, "dust/detach:angle");
   if (motion_size) memory->grow(before, nmax, motion_size, "dust/detach:before");
-  if (words) memory->grow(attached, nmax, words, "dust/detach:attached");
 }
 
 void CarrierData::copy(int i, int j)
 {
   state[j] = state[i];
+  coat[j] = coat[i];
+  radius[j] = radius[i];
+  attached[j] = attached[i];
   window_mass[j] = window_mass[i];
   began[j] = began[i];
   std::copy_n(columns[i], static_cast<int>(DetachAtom::SIZE), columns[j]);
   if (orientation) orientation[j] = orientation[i];
   if (angle) std::copy_n(angle[i], 3, angle[j]);
   if (before) std::copy_n(before[i], motion_size, before[j]);
-  if (words) std::copy_n(attached[i], words, attached[j]);
 }
 
 void CarrierData::clear(int i)
 {
   state[i] = NO_CARRIER;
+  coat[i] = 0;
+  radius[i] = 0.0;
+  attached[i] = std::vector<uint64_t>();
   window_mass[i] = began[i] = 0.0;
   if (angle) std::fill_n(angle[i], 3, 0.0);
   if (before) std::fill_n(before[i], motion_size, 0.0);
@@ -121,28 +122,42 @@ std::vector<bool> CarrierData::colliding(size_t collisions) const
 
 /* ---------------------------------------------------------------------- */
 
-int CarrierData::size() const { return 1 + DetachAtom::SIZE + 2 + layout() + words; }
+// numbers before the orientation, and the number of words
+int CarrierData::size(int words) const { return 6 + DetachAtom::SIZE + layout() + words; }
 
 void CarrierData::pack(int i, Dust::Packer &to) const
 {
   to.put(state[i] >= 0 ? 0 : state[i]);
+  to.put(coat[i]);
+  to.put(radius[i]);
   to.put(columns[i], DetachAtom::SIZE);
   to.put(window_mass[i]);
   to.put(began[i]);
   if (orientation) to.put(&orientation[i], 1);
   if (angle) to.put(angle[i], 3);
   if (before) to.put(before[i], motion_size);
-  to.put(attached[i], words);
+  to.put(attached[i]);
 }
 
 void CarrierData::unpack(int i, Dust::Unpacker &from)
 {
   state[i] = static_cast<int>(from.number());
+  coat[i] = static_cast<int>(from.number());
+  radius[i] = from.number();
   from.get(columns[i], DetachAtom::SIZE);
   window_mass[i] = from.number();
   began[i] = from.number();
   if (orientation) from.get(&orientation[i], 1);
   if (angle) from.get(angle[i], 3);
   if (before) from.get(before[i], motion_size);
-  from.get(attached[i], words);
+  from.get(attached[i]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double CarrierData::memory_usage() const
+{
+  double bytes = double(atom->nmax) * (size(0) * sizeof(double) + sizeof(attached[0]));
+  for (const std::vector<uint64_t> &words : attached) bytes += words.capacity() * sizeof(uint64_t);
+  return bytes;
 }

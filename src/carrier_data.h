@@ -22,7 +22,9 @@ class CarrierData : protected Pointers {
  public:
   enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: number of the collision
   int *state;
-  uint64_t **attached;              // a bit a grain, once there is a texture
+  int *coat;                                      // number of its texture
+  double *radius;                                 // when it became a carrier; 0 for other atoms
+  std::vector<std::vector<uint64_t>> attached;    // of carriers, a bit a grain of the texture
   Dust::Quaternion *orientation;    // if it is not the same for all for ever: TURN_EVERY steps ago at most, with
   double **angle;                   // rotation: about which the carrier has turned since
   double *window_mass;              // lost in the window that is not complete yet
@@ -36,8 +38,6 @@ class CarrierData : protected Pointers {
   CarrierData(const CarrierData &) = delete;
   CarrierData &operator=(const CarrierData &) = delete;
 
-  // words of attached bits from now on
-  void set_words(int n);
   void grow(int nmax);
   void copy(int i, int j);
   void clear(int i);    // no carrier
@@ -51,15 +51,16 @@ class CarrierData : protected Pointers {
   std::vector<bool> colliding(size_t collisions) const;    // by number of the collision, whether a carrier has it
 
   // of a carrier; the number of its collision does not travel, 0 stands for it
-  int size() const;
+  int size(int words) const;    // with so many words of attached bits
   int layout() const { return motion_size + (angle_used ? 7 : orientation_used ? 4 : 0); }    // tells which are used
   void pack(int i, Dust::Packer &) const;
   void unpack(int i, Dust::Unpacker &);
 
+  double memory_usage() const;
+
  private:
   bool angle_used, orientation_used;
   int motion_size;
-  int words;
 };
 
 }    // namespace LAMMPS_NS

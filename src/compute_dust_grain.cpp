@@ -63,7 +63,7 @@ void ComputeDustGrain::compute_local()
 
 bool ComputeDustGrain::shows(const FixDustDetach *dust, int i) const
 {
-  return (atom->mask[i] & groupbit) && dust->all_carriers().state[i] != CarrierData::NO_CARRIER && dust->coat_of(i);
+  return (atom->mask[i] & groupbit) && dust->all_carriers().state[i] != CarrierData::NO_CARRIER;
 }
 
 bigint ComputeDustGrain::count(const FixDustDetach *dust) const
@@ -85,15 +85,15 @@ void ComputeDustGrain::add_grains(const FixDustDetach *dust, int i)
   const CarrierData &carriers = dust->all_carriers();
   const Dust::Quaternion standing = carriers.standing(i);
   const double lost = carriers.columns[i][DetachAtom::MASS] / (table.grains() * table.mean_mass());
-  const double *centre = atom->x[i];
+  const double *centre = atom->x[i], radius = carriers.radius[i];
   for (int word = 0; word < table.words(); word++)
     Dust::each_bit(carriers.attached[i][word], [&](int k) {
       const Dust::GrainTable::Site &site = table.site(word * Dust::PATCH + k);
+      const double grain_radius = coat.texture.grains[site.grain].radius, shell = radius + grain_radius;
       double n[3];
       standing.to_space(site.n, n);
-      rows.push_back({double(atom->tag[i]), site.grain + 1.0, 2.0 * coat.texture.grains[site.grain].radius,
-                      centre[0] + site.shell * n[0], centre[1] + site.shell * n[1], centre[2] + site.shell * n[2],
-                      lost});
+      rows.push_back({double(atom->tag[i]), site.grain + 1.0, 2.0 * grain_radius, centre[0] + shell * n[0],
+                      centre[1] + shell * n[1], centre[2] + shell * n[2], lost, 2.0 * coat.radius});
     });
 }
 

@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 using namespace LAMMPS_NS;
 
@@ -33,41 +34,92 @@ void CreateDust::command(int narg, char **arg)
   if (narg < 3) utils::missing_cmd_args(FLERR, "create_dust", error);
   const int igroup = group->find(arg[0]);
   if (igroup < 0) error->all(FLERR, "Create_dust group {} does not exist", arg[0]);
+  DustOptions options(lmp, "Create_dust");
+  read(narg, arg, options);
+
+  const std::vector<Carrier> carriers = all_carriers(group->bitmask[igroup], options);
+  if (carriers.empty()) error->all(FLERR, "Create_dust group {} has no carriers", arg[0]);
+  place(carriers, options);
+  check_room(carriers);
+  for (const Size &size : sizes) {
+    warn_of_crushed_grains(size, carriers, options);
+    options.save(size.texture, &size == &sizes.front());
+  }
+  create(carriers);
+}
+
+/* ----------------------------------------------------------------------
+   a texture for each size of carriers
+------------------------------------------------------------------------- */
+
+void CreateDust::place(const std::vector<Carrier> &carriers, const DustOptions &options)
+{
+  std::vector<double> radii;
+  for (const Carrier &carrier : carriers) radii.push_back(carrier.radius);
+  std::sort(radii.begin(), radii.end(), std::greater<>());
+  for (const double radius : radii) {
+    if (!sizes.empty() && DustOptions::same_size(radius, sizes.back().radius)) continue;
+    const Dust::Texture texture = options.texture(radius);
+    sizes.push_back({radius, texture, sites_of(texture, options)});
+  }
+}
+
+const CreateDust::Size &CreateDust::size_of(const Carrier &carrier) const
+{
+  return *std::find_if(sizes.begin(), sizes.end(),
+                       [&](const Size &size) { return DustOptions::same_size(carrier.radius, size.radius); });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void CreateDust::read(int narg, char **arg, DustOptions &options)
+{
   if (strcmp(arg[1], "type") != 0) error->all(FLERR, "Create_dust wants the word type after the group, not {}", arg[1]);
-  const int type = utils::is_integer(arg[2]) ? utils::inumeric(FLERR, arg[2], false, lmp) : 0;
-  if (type < 1 || type > atom->ntypes)
+  first_type = utils::is_integer(arg[2]) ? utils::inumeric(FLERR, arg[2], false, lmp) : 0;
+  if (first_type < 1 || first_type > atom->ntypes)
     error->all(FLERR, "Create_dust type {} must be from 1 to {}", arg[2], atom->ntypes);
   if (domain->triclinic) error->all(FLERR, "Create_dust needs an orthogonal box");
   if (!atom->tag_enable || !atom->omega_flag) error->all(FLERR, "Create_dust needs atoms with IDs and spin");
 
-  DustOptions options(lmp, "Create_dust");
-  options.read(3, narg, arg);
-
-  const double carrier_radius = options.carrier_radius(igroup);
-  if (carrier_radius == 0.0) error->all(FLERR, "Create_dust group {} has no carriers", arg[0]);
-  const Dust::Texture texture = options.texture(carrier_radius);
-  const std::vector<Site> sites = sites_of(texture, options);
-  const std::vector<Carrier> carriers = all_carriers(group->bitmask[igroup], options);
-  check_room(carriers, sites);
-  warn_of_crushed_grains(texture, carriers, options, group->bitmask[igroup]);
-  options.save(texture);
-  create(type, carriers, sites);
+  const auto take_classes = [this](Keywords &words) {
+    classes.number = words.whole_number(1, atom->ntypes - first_type + 1, "K");
+    classes.low = words.number(Range::above(0.0), "LOW");
+    classes.high = words.number(Range::above(classes.low), "HIGH");
+  };
+  options.read(3, narg, arg, {{"classes", take_classes}});
 }
+
+/* ---------------------------------------------------------------------- */
+
+int CreateDust::Classes::of(double factor) const
+{
+  const double place = number * std::log(factor / low) / std::log(high / low);
+  return static_cast<int>(std::clamp(std::floor(place), 0.0, number - 1.0));
+}
+
+double CreateDust::Classes::factor(int k) const { return low * std::pow(high / low, (k + 0.5) / number); }
 
 /* ----------------------------------------------------------------------
    where the grains of a texture rest on a carrier
 ------------------------------------------------------------------------- */
 
-std::vector<CreateDust::Site> CreateDust::sites_of(const Dust::Texture &texture, const DustOptions &options)
+std::vector<CreateDust::Site> CreateDust::sites_of(const Dust::Texture &texture, const DustOptions &options) const
 {
   std::vector<Site> sites;
   for (const Dust::Grain &grain : texture.grains) {
+    if (grain.adhesion != 1.0 && classes.number == 0)
+      error->all(FLERR,
+                 "Create_dust needs classes K LOW HIGH for grains with a spread of adhesion: an atom type for each "
+                 "class of pull-off forces");
     Site site;
+    const int k = classes.number ? classes.of(grain.adhesion) : 0;
+    const double gamma = options.surface_energy * (classes.number ? classes.factor(k) : 1.0);
+    site.type = first_type + k;
     MathExtra::copy3(grain.n, site.n);
     site.radius = grain.radius;
     site.mass = 4.0 / 3.0 * MathConst::MY_PI * MathSpecial::cube(grain.radius) * options.density;
     const double r12 = Dust::effective_radius(texture.carrier_radius, grain.radius);
-    const double a0 = Dust::equilibrium_contact_radius(options.surface_energy, r12, options.modulus());
+    const double a0 = Dust::equilibrium_contact_radius(gamma, r12, options.modulus());
     site.distance = texture.carrier_radius + grain.radius - Dust::equilibrium_overlap(a0, r12);
     sites.push_back(site);
   }
@@ -85,14 +137,15 @@ void CreateDust::arm_of(const Carrier &carrier, const Site &site, double *arm)
    before the first grain is made: all of them can be, or there are none
 ------------------------------------------------------------------------- */
 
-void CreateDust::check_room(const std::vector<Carrier> &carriers, const std::vector<Site> &sites) const
+void CreateDust::check_room(const std::vector<Carrier> &carriers) const
 {
-  const double wanted = double(sites.size()) * double(carriers.size());
+  double wanted = 0.0;
+  for (const Carrier &carrier : carriers) wanted += double(size_of(carrier).sites.size());
   if (double(DustAtoms::highest_tag(lmp)) + wanted >= double(MAXTAGINT))
     error->all(FLERR, "Create_dust makes more atoms than LAMMPS has IDs for");
   bigint outside = 0;
   for (const Carrier &carrier : carriers)
-    for (const Site &site : sites) {
+    for (const Site &site : size_of(carrier).sites) {
       double x[3];
       arm_of(carrier, site, x);
       MathExtra::add3(carrier.x, x, x);
@@ -107,19 +160,19 @@ void CreateDust::check_room(const std::vector<Carrier> &carriers, const std::vec
 
 /* ---------------------------------------------------------------------- */
 
-void CreateDust::create(int type, const std::vector<Carrier> &carriers, const std::vector<Site> &sites)
+void CreateDust::create(const std::vector<Carrier> &carriers)
 {
   tagint tag = DustAtoms::highest_tag(lmp);
   DustAtoms atoms(lmp);
   for (const Carrier &carrier : carriers)
-    for (const Site &site : sites) {
+    for (const Site &site : size_of(carrier).sites) {
       tag++;    // the same ID on any number of ranks
       double arm[3], x[3], v[3];
       arm_of(carrier, site, arm);
       MathExtra::add3(carrier.x, arm, x);
       MathExtra::cross3(carrier.omega, arm, v);
       MathExtra::add3(carrier.v, v, v);
-      atoms.create(type, tag, x, site.radius, site.mass, v, carrier.omega);
+      atoms.create(site.type, tag, x, site.radius, site.mass, v, carrier.omega);
     }
   const bigint made = atoms.finish();
   if (comm->me == 0) utils::logmesg(lmp, "Created {} grains on {} carriers\n", made, carriers.size());
@@ -132,7 +185,7 @@ void CreateDust::create(int type, const std::vector<Carrier> &carriers, const st
 std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const DustOptions &options) const
 {
   struct Numbers {
-    double tag, x[3], v[3], omega[3];
+    double tag, x[3], v[3], omega[3], radius, mass;
   };
   std::vector<Numbers> mine;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -142,13 +195,15 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const Du
     MathExtra::copy3(atom->x[i], n.x);
     MathExtra::copy3(atom->v[i], n.v);
     MathExtra::copy3(atom->omega[i], n.omega);
+    n.radius = options.carrier_radius(i);
+    n.mass = atom->rmass[i];
     mine.push_back(n);
   }
   std::vector<Numbers> all = dust_gather(mine, ALL_RANKS, world);
   std::sort(all.begin(), all.end(), [](const Numbers &a, const Numbers &b) { return a.tag < b.tag; });
   std::vector<Carrier> carriers;
   for (const Numbers &n : all) {
-    Carrier carrier = {{}, {}, {}, options.orientation(static_cast<tagint>(n.tag))};
+    Carrier carrier = {{}, {}, {}, n.radius, n.mass, options.orientation(static_cast<tagint>(n.tag))};
     MathExtra::copy3(n.x, carrier.x);
     MathExtra::copy3(n.v, carrier.v);
     MathExtra::copy3(n.omega, carrier.omega);
@@ -163,18 +218,19 @@ std::vector<CreateDust::Carrier> CreateDust::all_carriers(int groupbit, const Du
    not known where textures lie at random.
 ------------------------------------------------------------------------- */
 
-void CreateDust::warn_of_crushed_grains(const Dust::Texture &texture, const std::vector<Carrier> &carriers,
-                                        const DustOptions &options, int groupbit) const
+void CreateDust::warn_of_crushed_grains(const Size &size, const std::vector<Carrier> &carriers,
+                                        const DustOptions &options) const
 {
   if (!options.same_orientation()) return;
+  const Dust::Texture &texture = size.texture;
   const double R = texture.carrier_radius, E = options.elastic[2], nu = options.elastic[3];
   const double *axis = texture.bare.axis;
-  double speed = 0.0;
-  for (const Carrier &c : carriers) speed = std::max(speed, MathExtra::dot3(c.v, axis));
-  double mass = 0.0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit) mass = std::max(mass, atom->rmass[i]);
-  MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPI_DOUBLE, MPI_MAX, world);
+  double speed = 0.0, mass = 0.0;
+  for (const Carrier &carrier : carriers) {
+    if (&size_of(carrier) != &size) continue;
+    speed = std::max(speed, MathExtra::dot3(carrier.v, axis));
+    mass = std::max(mass, carrier.mass);
+  }
   const double overlap = Dust::hertz_overlap(Dust::combined_modulus(E, nu, E, nu), R, mass, speed);
 
   int crushed = 0;

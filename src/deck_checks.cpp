@@ -179,10 +179,10 @@ void DeckChecks::check_size(int i, double radius) const
         dust->id, atom->tag[i], 2.0 * atom->radius[i], 2.0 * radius);
 }
 
-void DeckChecks::check_all_sizes(double radius) const
+void DeckChecks::check_all_sizes(const double *radii) const
 {
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & dust->groupbit) check_size(i, radius);
+    if ((atom->mask[i] & dust->groupbit) && radii[i] > 0.0) check_size(i, radii[i]);
 }
 
 /* ---------------------------------------------------------------------- */

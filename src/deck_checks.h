@@ -33,7 +33,7 @@ class DeckChecks : protected Pointers {
   // whether an atom with this mask has no acceleration, whatever forces act on it
   bool holds(int mask) const { return fixes.holds(mask); }
 
-  // stops if carrier i has another radius than its texture
+  // stops if carrier i has another radius than when it became one
   void check_size(int i, double radius) const;
   // the same for all carriers, where a fix changes them
   // a force, torque or spin that is not a number stops the run
@@ -41,9 +41,9 @@ class DeckChecks : protected Pointers {
   {
     if (!motion.is_finite()) stop_at(i);
   }
-  void look_at_sizes(double radius) const
+  void look_at_sizes(const double *radii) const
   {
-    if (sizes_change) check_all_sizes(radius);
+    if (sizes_change) check_all_sizes(radii);
   }
 
   // how a carrier's collision has been so far, as stiff contacts would have it
@@ -121,7 +121,7 @@ class DeckChecks : protected Pointers {
   enum { NOBODY = -1, SEVERAL = -2 };
   int neighbour(int i) const;
   bool pulled_by_one(int i) const;
-  void check_all_sizes(double radius) const;
+  void check_all_sizes(const double *radii) const;
   struct Softness {
     double factor;
     std::string which, advice;

@@ -38,12 +38,12 @@ enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, SIZE };
 
 // columns of the local array
 namespace DetachRow {
-enum { STEP, CARRIER, GRAIN, MODE, DIAMETER, X, Y, Z, VX, VY, VZ, SIZE };
+enum { STEP, CARRIER, GRAIN, MODE, DIAMETER, X, Y, Z, VX, VY, VZ, TEXTURE, SIZE };
 }
 
 // columns of the local array of compute dust/grain
 namespace GrainRow {
-enum { CARRIER, GRAIN, DIAMETER, X, Y, Z, LOST, SIZE };
+enum { CARRIER, GRAIN, DIAMETER, X, Y, Z, LOST, TEXTURE, SIZE };
 }
 
 }    // namespace LAMMPS_NS

@@ -21,6 +21,7 @@ DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
     rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), by_motion(false), lose_mass(false),
     emit(0), weightless(false)
 {
+  class_width = 0.05;
   constexpr int FIRST = 3;    // after ID, group and style
   Keywords(lmp, command, narg, arg).read(keywords(), FIRST);
   complete();
@@ -39,15 +40,17 @@ std::vector<Keyword> DetachSettings::keywords()
 {
   std::vector<Keyword> table = DustOptions::keywords();
   const std::vector<Keyword> own = {
+      {"sizes", [this](Keywords &words) { class_width = words.number(Range::from_to(0.0, 1.0)); }},
       {"friction", [this](Keywords &words) { friction = words.number(Range::at_least(0.0)); }},
       {"rolling", [this](Keywords &words) { rolling = words.number(Range::from_to(0.0, 3.15)); }},
       {"damping", [this](Keywords &words) { damping = words.number(Range::at_least(0.0)); }},
       {"tangential",
        [this](Keywords &words) {
          // in the order of their names
-         constexpr decltype(criteria.tangential) LAWS[] = {Dust::Criteria::ESTIMATE, Dust::Criteria::INTEGRATE,
-                                                           Dust::Criteria::FRICTIONLESS, Dust::Criteria::OFF};
-         criteria.tangential = LAWS[words.one_of({"estimate", "integrate", "frictionless", "off"})];
+         constexpr decltype(criteria.tangential) LAWS[] = {Dust::Criteria::IMPULSE, Dust::Criteria::ESTIMATE,
+                                                           Dust::Criteria::INTEGRATE, Dust::Criteria::FRICTIONLESS,
+                                                           Dust::Criteria::OFF};
+         criteria.tangential = LAWS[words.one_of({"impulse", "estimate", "integrate", "frictionless", "off"})];
        }},
       {"criteria", [this](Keywords &words) { criteria.ibrahim = words.one_of({"liftoff", "ibrahim"}) == 1; }},
       {"counts", [this](Keywords &words) { criteria.count = words.yes_or_no(); }},
@@ -79,8 +82,10 @@ void DetachSettings::check(int igroup)
   if (friction == UNSET) friction = 0.3;
   if (rotation && (!atom->omega_flag || !atom->torque_flag))
     error->all(FLERR, "{} rotation yes needs atoms with spin and torque, such as atom_style sphere", command);
-  if (damping != UNSET && criteria.tangential != Dust::Criteria::INTEGRATE)
-    error->all(FLERR, "{} damping needs tangential integrate: no other law follows how a grain's contact moves",
+  if (damping != UNSET && criteria.tangential != Dust::Criteria::IMPULSE &&
+      criteria.tangential != Dust::Criteria::INTEGRATE)
+    error->all(FLERR,
+               "{} damping needs tangential impulse or integrate: no other law knows how a grain's contact rings",
                command);
   if (by_motion && stiffen != 1.0)
     error->all(FLERR, "{} stiffen {} needs inertia contact: a motion does not tell which part contacts have", command,

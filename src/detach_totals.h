@@ -15,18 +15,19 @@
 
 namespace LAMMPS_NS {
 
-// what a rank has counted since the start, or since it read a restart file; whole numbers but for weight, the mass lost
-// in mean grain masses, which is one for equal grains
+// what a rank has counted since the start, or since it read a restart file; whole numbers but for weight and
+// initial_weight, the masses lost and brought, in mean grain masses of the first texture: one for equal grains
 
 struct DetachTotals {
   double initial, modes[Dust::NMODES], weight, collisions;
   double north, sliding, rolling;    // of the collisions that are over
   double no_room;                    // grains that were not emitted
+  double initial_weight;             // as weight
 
   double detached() const { return std::accumulate(modes, modes + Dust::NMODES, 0.0); }
 
   // to and from numbers, which a restart file keeps
-  static constexpr int SIZE = Dust::NMODES + 7;
+  static constexpr int SIZE = Dust::NMODES + 8;
   std::array<double, SIZE> numbers() const
   {
     std::array<double, SIZE> list;

@@ -4,6 +4,7 @@
 
 #include "dust_options.h"
 
+#include "core/adhesion_spread.h"
 #include "core/hamaker.h"
 #include "core/jkr.h"
 #include "core/texture_file.h"
@@ -68,8 +69,9 @@ Range plausible(double low, double high, const Dimension &of, const std::string 
 /* ---------------------------------------------------------------------- */
 
 DustOptions::DustOptions(LAMMPS *_lmp, const std::string &_command) :
-    Pointers(_lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, command(_command),
-    diameter(0.0), coverage(UNSET), distributed(false), sizes{}, seed(0), bare_given(false), orientation_seed(0)
+    Pointers(_lmp), density(UNSET), surface_energy(UNSET), elastic{UNSET, UNSET, UNSET, UNSET}, class_width(0.0),
+    command(_command), diameter(0.0), coverage(UNSET), distributed(false), sizes{}, spread(1.0), seed(0),
+    bare_given(false), orientation_seed(0)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, "{} needs atoms with radius and mass of their own, such as atom_style sphere", command);
@@ -87,11 +89,12 @@ DustOptions::DustOptions(LAMMPS *_lmp, const std::string &_command) :
 std::vector<Keyword> DustOptions::keywords()
 {
   return {
-      {"texture", [this](Keywords &words) { take_texture(words); }},
+      {"texture", [this](Keywords &words) { take_texture(words); }, true},
       {"coverage", [this](Keywords &words) { coverage = words.number(Range::above(0.0)); }},
       {"seed", [this](Keywords &words) { seed = words.whole_number(1, MAXSMALLINT); }},
       {"bare", [this](Keywords &words) { take_bare(words); }},
       {"distribution", [this](Keywords &words) { take_distribution(words); }},
+      {"spread", [this](Keywords &words) { spread = words.number(Range::from_to(1.0, Dust::MOST_SPREAD)); }},
       {"density",
        [this](Keywords &words) { density = words.number(plausible(10.0, 3e4, DENSITY, update->unit_style)); }},
       {"hamaker", [this](Keywords &words) { take_hamaker(words); }},
@@ -114,7 +117,9 @@ std::vector<Keyword> DustOptions::keywords()
 
 void DustOptions::take_texture(Keywords &words)
 {
-  if (words.one_of({"file", "monolayer"}, "SOURCE") == 0)
+  const bool again = from_file() || diameter != 0.0, is_file = words.one_of({"file", "monolayer"}, "SOURCE") == 0;
+  if (again && !(is_file && from_file())) words.refuse("is given twice: only texture file may be, for a size each");
+  if (is_file)
     read_file(words.word("the name of a file"));
   else
     diameter = words.number(Range::above(0.0), "DIAMETER");
@@ -174,9 +179,11 @@ void DustOptions::take_distribution(Keywords &words)
 
 /* ---------------------------------------------------------------------- */
 
-void DustOptions::read(int first, int narg, char **arg)
+void DustOptions::read(int first, int narg, char **arg, const std::vector<Keyword> &own)
 {
-  Keywords(lmp, command, narg, arg).read(keywords(), first);
+  std::vector<Keyword> table = keywords();
+  table.insert(table.end(), own.begin(), own.end());
+  Keywords(lmp, command, narg, arg).read(table, first);
   complete();
 }
 
@@ -212,15 +219,21 @@ void DustOptions::share(Dust::Texture &texture) const
   int number = static_cast<int>(texture.grains.size());
   MPI_Bcast(&number, 1, MPI_INT, 0, world);
   texture.grains.resize(number);
-  static_assert(sizeof(Dust::Grain) == 4 * sizeof(double), "grains are sent as numbers");
-  MPI_Bcast(texture.grains.data(), 4 * number, MPI_DOUBLE, 0, world);
+  constexpr int EACH = sizeof(Dust::Grain) / sizeof(double);
+  static_assert(sizeof(Dust::Grain) == EACH * sizeof(double), "grains are sent as numbers");
+  MPI_Bcast(texture.grains.data(), EACH * number, MPI_DOUBLE, 0, world);
 }
 
 void DustOptions::read_file(const std::string &name)
 {
-  file = name;
-  on_one_rank("texture file " + file, [this]() { from_file = Dust::read_texture_file(file); });
-  share(from_file);
+  Dust::Texture read;
+  on_one_rank("texture file " + name, [&]() { read = Dust::read_texture_file(name); });
+  share(read);
+  for (const File &other : files)
+    if (same_size(other.texture.carrier_radius, read.carrier_radius))
+      error->all(FLERR, "{} texture files {} and {} are both for carriers of diameter {}", command, other.name, name,
+                 2.0 * read.carrier_radius);
+  files.push_back({name, read});
 }
 
 /* ----------------------------------------------------------------------
@@ -229,13 +242,17 @@ void DustOptions::read_file(const std::string &name)
 
 void DustOptions::complete()
 {
-  if (file.empty()) {
+  if (!from_file()) {
     if (diameter == 0.0) error->all(FLERR, "{} needs keyword texture", command);
     if (coverage == UNSET) error->all(FLERR, "{} texture monolayer needs coverage", command);
     if (seed == 0) error->all(FLERR, "{} texture monolayer needs seed", command);
   } else {
-    const char *extra = coverage != UNSET ? "coverage" : seed ? "seed" : bare_given ? "bare" : "distribution";
-    if (coverage != UNSET || seed || bare_given || distributed)
+    const char *extra = coverage != UNSET ? "coverage"
+                        : seed            ? "seed"
+                        : bare_given      ? "bare"
+                        : distributed     ? "distribution"
+                                          : "spread";
+    if (coverage != UNSET || seed || bare_given || distributed || spread != 1.0)
       error->all(FLERR, "{} {} goes with texture monolayer: a texture file has its own grains", command, extra);
   }
   if (orientation_seed && !atom->tag_enable)
@@ -276,47 +293,48 @@ bool DustOptions::same_size(double radius, double other) { return std::fabs(radi
 
 /* ---------------------------------------------------------------------- */
 
-double DustOptions::carrier_radius(int igroup) const
+double DustOptions::carrier_radius(int i) const
 {
-  double extremes[2] = {0.0, 0.0};    // of radius and 1/radius: absent carriers change neither
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & group->bitmask[igroup])) continue;
-    if ((atom->tri && atom->tri[i] >= 0) || (atom->line && atom->line[i] >= 0))
-      error->one(FLERR,
-                 "{} group {} has triangles or lines, such as atom {}, which are no carriers: use a group without",
-                 command, group->names[igroup], atom->tag[i]);
-    const double radius = atom->radius[i];
-    if (!(radius > 0.0))
-      error->one(FLERR, "{} carrier {} has radius {}: it must be above 0", command, atom->tag[i], radius);
-    extremes[0] = std::max(extremes[0], radius);
-    extremes[1] = std::max(extremes[1], 1.0 / radius);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPI_DOUBLE, MPI_MAX, world);
-  if (extremes[0] == 0.0) return 0.0;
-  const double largest = extremes[0], least = 1.0 / extremes[1];
-  if (!same_size(least, largest))
-    error->all(FLERR,
-               "{} group {} has carriers of diameter {} to {}: one texture serves one size, use a group and a command "
-               "for each",
-               command, group->names[igroup], 2.0 * least, 2.0 * largest);
-  return largest;
+  if ((atom->tri && atom->tri[i] >= 0) || (atom->line && atom->line[i] >= 0))
+    error->one(FLERR, "{} carriers must be spheres, and atom {} is a triangle or line: use a group without those",
+               command, atom->tag[i]);
+  const double radius = atom->radius[i];
+  if (!(radius > 0.0))
+    error->one(FLERR, "{} carrier {} has radius {}: it must be above 0", command, atom->tag[i], radius);
+  return radius;
+}
+
+/* ----------------------------------------------------------------------
+   the nearest in ln R
+------------------------------------------------------------------------- */
+
+int DustOptions::file_for(double radius) const
+{
+  const auto distance = [=](const File &file) { return std::fabs(std::log(file.texture.carrier_radius / radius)); };
+  const auto nearest = std::min_element(files.begin(), files.end(),
+                                        [&](const File &a, const File &b) { return distance(a) < distance(b); });
+  const double size = nearest->texture.carrier_radius;
+  if (!same_size(size, radius) && distance(*nearest) > std::log1p(class_width))
+    error->one(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, nearest->name, 2.0 * size,
+               2.0 * radius);
+  return static_cast<int>(nearest - files.begin());
 }
 
 /* ---------------------------------------------------------------------- */
 
 Dust::Texture DustOptions::texture(double radius) const
 {
-  Dust::Texture made = from_file;
-  if (file.empty()) {
+  Dust::Texture made;
+  if (from_file()) {
+    made = files[file_for(radius)].texture;
+  } else {
     on_one_rank("texture", [&]() {
       made = distributed ? Dust::place_monolayer(radius, sizes, coverage, bare, seed)
                          : Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
+      Dust::spread_adhesion(made, spread, seed);
     });
     share(made);
   }
-  if (!same_size(made.carrier_radius, radius))
-    error->all(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, file,
-               2.0 * made.carrier_radius, 2.0 * radius);
   check_plausible(made);
   return made;
 }
@@ -347,7 +365,15 @@ void DustOptions::check_plausible(const Dust::Texture &texture) const
 
 /* ---------------------------------------------------------------------- */
 
-void DustOptions::save(const Dust::Texture &texture) const
+void DustOptions::save(const Dust::Texture &texture, bool first) const
 {
-  if (!write.empty()) on_one_rank("write " + write, [&]() { Dust::write_texture_file(texture, write); });
+  if (write.empty()) return;
+  std::string name = write;
+  const size_t star = name.find('*');
+  if (star != std::string::npos)
+    name.replace(star, 1, fmt::format("{:.9g}", 2.0 * texture.carrier_radius));
+  else if (!first)
+    error->all(FLERR, "{} write {} needs a * where the diameter goes: there are carriers of several sizes", command,
+               write);
+  on_one_rank("write " + name, [&]() { Dust::write_texture_file(texture, name); });
 }

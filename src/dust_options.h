@@ -22,17 +22,20 @@ class DustOptions : protected Pointers {
  public:
   DustOptions(class LAMMPS *, const std::string &command);
 
-  // reads the words from arg[first] on, of a command that has no keywords of its own
-  void read(int first, int narg, char **arg);
+  // reads the words from arg[first] on, of a command that has some of its own
+  void read(int first, int narg, char **arg, const std::vector<Keyword> &own);
 
-  // diameter of the carriers of a group on all ranks, halved; 0 if there are none, an error if they differ
-  double carrier_radius(int igroup) const;
-  // whether carriers of two radii can share a texture
+  // radius of an atom that is to be a carrier; stops if it cannot be one
+  double carrier_radius(int i) const;
+  // whether two radii are one size
   static bool same_size(double, double);
-  // the texture for carriers of a radius
+  // whether textures come from files; then which of them, from 0, is for carriers of a radius
+  bool from_file() const { return !files.empty(); }
+  int file_for(double carrier_radius) const;
+  // all ranks: the texture for carriers of a radius
   Dust::Texture texture(double carrier_radius) const;
-  // writes it to a file if that is asked for
-  void save(const Dust::Texture &) const;
+  // writes it to a file if that is asked for: the first of them, or each one
+  void save(const Dust::Texture &, bool first) const;
 
   // how the carrier with an ID stands at first
   Dust::Quaternion orientation(tagint) const;
@@ -40,6 +43,7 @@ class DustOptions : protected Pointers {
 
   double density, surface_energy, elastic[4];    // elastic: E and nu of the grains, E and nu of the carriers
   double modulus() const;                        // combined modulus E*
+  double class_width;                            // w: a texture serves sizes up to a factor 1 + w from that of its file
 
  protected:
   std::string command;
@@ -51,11 +55,16 @@ class DustOptions : protected Pointers {
   bool reference_units() const;    // in which the reference case is known, so that there are defaults
 
  private:
-  std::string file, write;
-  Dust::Texture from_file;
+  std::string write;
+  struct File {
+    std::string name;
+    Dust::Texture texture;
+  };
+  std::vector<File> files;
   double diameter, coverage;
   bool distributed;    // sizes instead of diameter
   Dust::SizeDistribution sizes;
+  double spread;    // geometric standard deviation of the pull-off forces of grains of a size
   int seed;
   Dust::BareCap bare;
   bool bare_given;

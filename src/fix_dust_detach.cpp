@@ -4,6 +4,7 @@
 
 #include "fix_dust_detach.h"
 
+#include "core/tangential_law.h"
 #include "dust_atoms.h"
 
 #include "atom.h"
@@ -24,11 +25,12 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grains is not in the carrier's yet
+static constexpr double RESTART_FORMAT = 2.0;
 
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
-    Fix(_lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings),
+    Fix(_lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), coats(lmp, this, settings),
     carriers(lmp, settings.rotation, settings.rotation || !settings.same_orientation(),
              settings.by_motion ? CarrierMotion::SIZE : 0),
     steps(0.0), newcomers(true), motions(lmp), mine{}, shedding(lmp, this, settings.emit), exchange_room(0)
@@ -55,8 +57,7 @@ FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
   grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
-  coat.radius = settings.carrier_radius(igroup);
-  if (coat.radius > 0.0) build();
+  adopt();
   // last, as an error above leaves no fix behind that could be called back
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -72,23 +73,6 @@ FixDustDetach::~FixDustDetach()
   }
 }
 
-/* ----------------------------------------------------------------------
-   texture and what depends on it; on all ranks at once
-------------------------------------------------------------------------- */
-
-void FixDustDetach::build()
-{
-  coat.make(settings);
-  carriers.set_words(coat.table->words());
-  maxexchange = fixed_size() + 1 + exchange_room;
-  adopt();
-  settings.save(coat.texture);
-  if (comm->me == 0)
-    utils::logmesg(
-        lmp, "Fix dust/detach {}: {} grains a carrier, mean mass {:.5g}, pull-off acceleration {:.5g} to {:.5g}\n", id,
-        coat.table->grains(), coat.table->mean_mass(), coat.table->min_hold(), coat.table->max_hold());
-}
-
 int FixDustDetach::setmask()
 {
   return INITIAL_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE | (settings.by_motion ? END_OF_STEP : 0);
@@ -102,18 +86,16 @@ void FixDustDetach::init()
   shedding.check_deck();
   motions.look();
 
-  if (coat) {
-    const double radius = settings.carrier_radius(igroup);
-    if (radius > 0.0 && !DustOptions::same_size(radius, coat.radius))
-      error->all(
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && carriers.radius[i] > 0.0 &&
+        !DustOptions::same_size(atom->radius[i], carriers.radius[i]))
+      error->one(
           FLERR,
           "Fix dust/detach {} has a texture for carriers of diameter {}, but their diameter is now {}: set it before "
           "the fix",
-          id, 2.0 * coat.radius, 2.0 * radius);
-    adopt();
-  } else if ((coat.radius = settings.carrier_radius(igroup)) > 0.0) {
-    build();
-  } else {
+          id, 2.0 * carriers.radius[i], 2.0 * atom->radius[i]);
+  adopt();
+  if (coats.empty()) {
     bool inserts = false;
     for (const char *other : {"^pour", "^deposit", "^append/atoms", "^gcmc"})
       inserts = inserts || !modify->get_fix_by_style(other).empty();
@@ -152,8 +134,9 @@ void FixDustDetach::setup(int /*vflag*/)
 
 void FixDustDetach::post_neighbor()
 {
-  if (!coat && (coat.radius = settings.carrier_radius(igroup)) > 0.0) build();
-  if (newcomers) {
+  int any = newcomers;    // of a size that is new to all ranks, perhaps
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any) {
     adopt();
     weigh();
   }
@@ -165,38 +148,48 @@ void FixDustDetach::post_neighbor()
 }
 
 /* ----------------------------------------------------------------------
-   new atoms of the group become carriers with all their grains
+   new atoms of the group become carriers with all their grains; on all ranks at once, as their sizes may be new
 ------------------------------------------------------------------------- */
+
+bool FixDustDetach::is_newcomer(int i) const { return (atom->mask[i] & groupbit) && carriers.state[i] == NO_CARRIER; }
 
 void FixDustDetach::adopt()
 {
-  if (!coat) return;
+  std::vector<double> radii;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_newcomer(i)) radii.push_back(settings.carrier_radius(i));
+  coats.place(radii);
+  maxexchange = fixed_size() + 1 + exchange_room;
   newcomers = false;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || carriers.state[i] != NO_CARRIER) continue;
-    if (settings.emit && atom->type[i] == settings.emit)
-      error->one(FLERR, "Fix dust/detach emit {} is also the type of carrier {}", settings.emit, atom->tag[i]);
-    if (!DustOptions::same_size(atom->radius[i], coat.radius))
-      error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
-                 atom->tag[i], 2.0 * atom->radius[i], 2.0 * coat.radius);
-    carriers.state[i] = FREE_FLIGHT;
-    std::copy(coat.table->all_attached().begin(), coat.table->all_attached().end(), carriers.attached[i]);
-    array_atom[i][DetachAtom::ATTACHED] = coat.table->grains();
-    mine.initial += coat.table->grains();
-    if (carriers.orientation) carriers.orientation[i] = settings.orientation(atom->tag[i]);
-    carriers.began[i] = NOT_WEIGHED;
-    if (carriers.before) motions.remember(i, carriers.before[i]);
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_newcomer(i)) adopt(i);
+}
+
+void FixDustDetach::adopt(int i)
+{
+  if (settings.emit && atom->type[i] == settings.emit)
+    error->one(FLERR, "Fix dust/detach emit {} is also the type of carrier {}", settings.emit, atom->tag[i]);
+  carriers.state[i] = FREE_FLIGHT;
+  carriers.radius[i] = atom->radius[i];
+  carriers.coat[i] = coats.number_of(atom->radius[i]);
+  const Dust::GrainTable &table = table_of(i);
+  carriers.attached[i] = table.all_attached();
+  array_atom[i][DetachAtom::ATTACHED] = table.grains();
+  mine.initial += table.grains();
+  mine.initial_weight += table.grains() * coats[carriers.coat[i]].mass;
+  if (carriers.orientation) carriers.orientation[i] = settings.orientation(atom->tag[i]);
+  carriers.began[i] = NOT_WEIGHED;
+  if (carriers.before) motions.remember(i, carriers.before[i]);
 }
 
 // not yet where the fix is made: a restart file may bring carriers that have lost some already
 void FixDustDetach::weigh()
 {
-  if (!settings.lose_mass || !coat) return;
+  if (!settings.lose_mass) return;
   for (int i = 0; i < atom->nlocal; i++) {
     if (carriers.state[i] == NO_CARRIER || carriers.began[i] != NOT_WEIGHED) continue;
     carriers.began[i] = 0.0;
-    atom->rmass[i] += coat.table->grains() * coat.table->mean_mass();
+    atom->rmass[i] += table_of(i).grains() * table_of(i).mean_mass();
     shedding.mass_changed();
   }
 }
@@ -218,7 +211,7 @@ void FixDustDetach::initial_integrate(int /*vflag*/)
 
 void FixDustDetach::post_force(int /*vflag*/)
 {
-  if (coat) checks.look_at_sizes(coat.radius);
+  checks.look_at_sizes(carriers.radius);
   if (settings.by_motion) return note_contacts();
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
@@ -255,7 +248,7 @@ void FixDustDetach::post_force(int /*vflag*/)
       if (!touches && states[i] <= FREE_FLIGHT) continue;
       if (touches && states[i] == AT_REST) {    // what most carriers of a bed do
         const double torque2 = spins ? squared(torque + 3 * i) : 0.0, spin2 = spins ? squared(omega + 3 * i) : 0.0;
-        if (!coat.table->might_move(squared(f), torque2, spin2, settings.stiffen_time * rmass[i])) continue;
+        if (!table_of(i).might_move(squared(f), torque2, spin2, settings.stiffen_time * rmass[i])) continue;
       }
       if (!(mask[i] & groupbit) || states[i] == NO_CARRIER) continue;
       if (touches)
@@ -301,27 +294,29 @@ void FixDustDetach::collide(int i)
 {
   if (checks.holds(atom->mask[i])) return;
   const Dust::Motion motion = motion_of(i);
-  if (carriers.state[i] == AT_REST && !coat.table->may_move(motion)) return;
+  if (carriers.state[i] == AT_REST && !table_of(i).may_move(motion)) return;
   if (carriers.state[i] == FREE_FLIGHT) carriers.began[i] = steps;
   if (carriers.state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[carriers.state[i]];
-  if (collision.step(*coat.table, motion, settings.stiffen_time * update->dt, carriers.attached[i], collisions.work)) {
-    checks.grains_left(i, motion.acceleration, course_of(collision));
+  if (collision.step(table_of(i), motion, settings.stiffen_time * update->dt, carriers.attached[i].data(),
+                     collisions.work)) {
+    checks.grains_left(i, motion.acceleration, course_of(i));
     record(i);
   }
-  if (!settings.by_motion) checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), coat.table->min_hold());
+  if (!settings.by_motion) checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), table_of(i).min_hold());
   if (settings.emit || collision.max_packed_size() > exchange_room) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
-DeckChecks::Course FixDustDetach::course_of(const Dust::Collision &collision) const
+DeckChecks::Course FixDustDetach::course_of(int i) const
 {
-  return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold()};
+  const Dust::Collision &collision = collisions[carriers.state[i]];
+  return {collision.impulse(), collision.peak_acceleration(), table_of(i).min_hold()};
 }
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
 {
-  checks.check_size(i, coat.radius);
+  checks.check_size(i, carriers.radius[i]);
   carriers.state[i] = collisions.take();
   collisions[carriers.state[i]].begin(carriers.standing(i), motion.spin);
   make_exchange_room(i);
@@ -331,13 +326,13 @@ void FixDustDetach::finish_collision(int i, int next)
 {
   Dust::Collision &collision = collisions[carriers.state[i]];
   const Dust::Motion motion = motion_of(i);
-  if (collision.end(*coat.table, motion.spin, carriers.attached[i], collisions.work)) record(i);
+  if (collision.end(table_of(i), motion.spin, carriers.attached[i].data(), collisions.work)) record(i);
   array_atom[i][DetachAtom::PEAK_ACCELERATION] = collision.peak_acceleration();
-  checks.collision_over(i, next == FREE_FLIGHT ? steps - carriers.began[i] : 0.0, course_of(collision));
+  checks.collision_over(i, next == FREE_FLIGHT ? steps - carriers.began[i] : 0.0, course_of(i));
   mine.collisions += 1.0;
-  mine.north += collision.lost_north(*coat.table, carriers.attached[i]);
-  mine.sliding += collision.grains_that(Dust::SLIDING, *coat.table, carriers.attached[i]);
-  mine.rolling += collision.grains_that(Dust::ROLLING, *coat.table, carriers.attached[i]);
+  mine.north += collision.lost_north(table_of(i), carriers.attached[i].data());
+  mine.sliding += collision.grains_that(Dust::SLIDING, table_of(i), carriers.attached[i].data());
+  mine.rolling += collision.grains_that(Dust::ROLLING, table_of(i), carriers.attached[i].data());
   collisions.give_back(carriers.state[i]);
   carriers.state[i] = next;
   if (next == FREE_FLIGHT) leave_contact(i);
@@ -356,10 +351,10 @@ void FixDustDetach::leave_contact(int i)
 void FixDustDetach::spin_off(int i)
 {
   const Dust::Motion motion = motion_of(i);
-  if (!coat.table->may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
+  if (!table_of(i).may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
   begin_collision(i, motion);
-  if (collisions[carriers.state[i]].step(*coat.table, motion, settings.stiffen_time * update->dt, carriers.attached[i],
-                                         collisions.work))
+  if (collisions[carriers.state[i]].step(table_of(i), motion, settings.stiffen_time * update->dt,
+                                         carriers.attached[i].data(), collisions.work))
     record(i);
   collisions.give_back(carriers.state[i]);
   carriers.state[i] = FREE_FLIGHT;
@@ -375,6 +370,7 @@ void FixDustDetach::record(int i)
   const double half_kick = update->setupflag || settings.by_motion ? 0.0 : 0.5 * update->dt / atom->rmass[i];
   const double *x = atom->x[i], *v = atom->v[i], *f = atom->f[i], *spin = atom->omega[i];
   const double velocity[3] = {v[0] + half_kick * f[0], v[1] + half_kick * f[1], v[2] + half_kick * f[2]};
+  const DustCoat &coat = coats[carriers.coat[i]];
   double lost = 0.0, lost_mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
   for (const Dust::Detachment &d : collisions.work.detached) {
     mine.modes[d.mode] += 1.0;
@@ -382,7 +378,7 @@ void FixDustDetach::record(int i)
     if (!collisions.work.locate) continue;
     const int number = coat.table->grain(d.bit);
     const Dust::Grain &grain = coat.texture.grains[number];
-    const double distance = coat.radius + grain.radius, *n = d.direction, *w = d.velocity;
+    const double distance = carriers.radius[i] + grain.radius, *n = d.direction, *w = d.velocity;
     const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
     const double before = d.before_end / settings.stiffen_time;    // when it left: as the carrier moved then
     DustShedding::Grain left = {number + 1.0, mass, grain.radius, shedding.now() - before, {}, {}, {}};
@@ -395,11 +391,12 @@ void FixDustDetach::record(int i)
     lost_mass += mass;
     if (settings.keep_rows)
       rows.add({double(update->ntimestep) - std::round(before / update->dt), double(atom->tag[i]), left.number,
-                d.mode + 1.0, 2.0 * grain.radius, left.x[0], left.x[1], left.x[2], left.v[0], left.v[1], left.v[2]});
+                d.mode + 1.0, 2.0 * grain.radius, left.x[0], left.x[1], left.x[2], left.v[0], left.v[1], left.v[2],
+                2.0 * coat.radius});
     if (settings.emit) shedding.wait(i, left);
   }
   if (settings.lose_mass) shedding.take_off(i, lost_mass, momentum);
-  mine.weight += lost;
+  mine.weight += lost * coat.mass;
   array_atom[i][DetachAtom::ATTACHED] -= double(collisions.work.detached.size());
   array_atom[i][DetachAtom::MASS] += lost * coat.table->mean_mass();
   carriers.window_mass[i] += lost * coat.table->mean_mass();
@@ -436,17 +433,17 @@ template <typename Question> double FixDustDetach::sum_under_way(Question questi
 double FixDustDetach::compute_scalar()
 {
   const DetachTotals t = mine.sum(world);
-  return t.initial > 0.0 ? t.weight / t.initial : 0.0;
+  return t.initial > 0.0 ? t.weight / t.initial_weight : 0.0;
 }
 
 double FixDustDetach::compute_vector(int n)
 {
   using namespace DetachVector;
   const DetachTotals t = mine.sum(world);
-  const double grain_mass = coat ? coat.table->mean_mass() : 0.0;
+  const double grain_mass = coats.unit_mass();
   const auto met = [this](Dust::Mode mode) {
     return sum_under_way(
-        [=](const Dust::Collision &c, int i) { return c.grains_that(mode, *coat.table, carriers.attached[i]); });
+        [=](const Dust::Collision &c, int i) { return c.grains_that(mode, table_of(i), carriers.attached[i].data()); });
   };
   switch (n) {
     case INITIAL_GRAINS: return t.initial;
@@ -456,10 +453,10 @@ double FixDustDetach::compute_vector(int n)
     case SOUTH: return t.detached() - compute_vector(NORTH);
     case NORTH:
       return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
-               return c.lost_north(*coat.table, carriers.attached[i]);    // with the velocity so far
+               return c.lost_north(table_of(i), carriers.attached[i].data());    // with the velocity so far
              });
     case DETACHED_MASS: return t.weight * grain_mass;
-    case INITIAL_MASS: return t.initial * grain_mass;
+    case INITIAL_MASS: return t.initial_weight * grain_mass;
     case COLLISIONS: return t.collisions;
     case MET_SLIDING: return t.sliding + met(Dust::SLIDING);
     case MET_ROLLING: return t.rolling + met(Dust::ROLLING);
@@ -478,8 +475,7 @@ double FixDustDetach::attached_grains() const
 
 double FixDustDetach::memory_usage()
 {
-  const double bytes = double(atom->nmax) * carriers.size() * sizeof(double) + collisions.memory_usage();
-  return bytes + rows.memory_usage() + shedding.memory_usage();
+  return carriers.memory_usage() + collisions.memory_usage() + rows.memory_usage() + shedding.memory_usage();
 }
 
 /* ----------------------------------------------------------------------
@@ -510,7 +506,7 @@ void FixDustDetach::post_run()
   if (settings.lose_mass) tell_ghosts();
   share_exchange_room();
   for (int i = 0; i < atom->nlocal; i++)    // of collisions that are not over, too
-    if (carriers.state[i] >= 0) checks.collision_over(i, 0.0, course_of(collisions[carriers.state[i]]));
+    if (carriers.state[i] >= 0) checks.collision_over(i, 0.0, course_of(i));
   checks.tell();
 }
 
@@ -556,10 +552,10 @@ void FixDustDetach::set_arrays(int i)
 }
 
 /* ----------------------------------------------------------------------
-   layout: words of a texture, the carrier's data, waiting grains, collision; or 0, NEWCOMER
+   layout: CARRIER, its data, waiting grains, collision; or NO_DATA, NEWCOMER
 ------------------------------------------------------------------------- */
 
-int FixDustDetach::fixed_size() const { return 2 + carriers.size(); }
+int FixDustDetach::fixed_size() const { return 2 + carriers.size(coats.max_words()); }
 
 // twice what is needed now, so that Comm need not enlarge its buffers each time
 void FixDustDetach::make_exchange_room(int i)
@@ -590,10 +586,10 @@ int FixDustDetach::packed_size(int i) const
 void FixDustDetach::pack(int i, bool for_file, Dust::Packer &to) const
 {
   if (carriers.state[i] == NO_CARRIER) {
-    to.put(shedding.is_new(i) ? NEWCOMER : 0.0);
+    to.put(shedding.is_new(i) ? NEWCOMER : NO_DATA);
     return;
   }
-  to.put(coat.table->words());
+  to.put(CARRIER);
   carriers.pack(i, to);
   shedding.pack(i, for_file, to);
   if (carriers.state[i] >= 0) collisions[carriers.state[i]].pack(to);
@@ -601,14 +597,15 @@ void FixDustDetach::pack(int i, bool for_file, Dust::Packer &to) const
 
 void FixDustDetach::unpack(int i, const double *buf)
 {
+  const bool before = newcomers;
   set_arrays(i);
   Dust::Unpacker from(buf);
-  const int words = static_cast<int>(from.number());
-  if (words != NEWCOMER) shedding.set_seen(i);
-  if (words <= 0) return;
-  if (!coat || words != coat.table->words())
-    error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
+  const int kind = static_cast<int>(from.number());
+  if (kind != NEWCOMER) shedding.set_seen(i);
+  if (kind != CARRIER) return;
+  newcomers = before;
   carriers.unpack(i, from);
+  if (carriers.coat[i] >= coats.size()) error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
   rows.open();
   shedding.unpack(i, from);
   if (carriers.state[i] == 0) {
@@ -642,7 +639,8 @@ int FixDustDetach::unpack_exchange(int nlocal, double *buf)
 
 void FixDustDetach::write_restart(FILE *fp)
 {
-  std::vector<double> list = {coat.checksum, double(carriers.layout()), double(settings.lose_mass), steps};
+  std::vector<double> list = {RESTART_FORMAT, double(carriers.layout()), double(settings.lose_mass), steps};
+  for (double number : coats.numbers_to_keep()) list.push_back(number);
   for (double number : shedding.numbers()) list.push_back(number);
   for (double number : mine.sum(world).numbers()) list.push_back(number);
   if (!rows.save(list, world) && comm->me == 0)
@@ -657,15 +655,17 @@ void FixDustDetach::write_restart(FILE *fp)
 void FixDustDetach::restart(char *buf)
 {
   const auto *p = reinterpret_cast<const double *>(buf);
-  const double checksum = *p++, layout = *p++, lost_mass = *p++;
-  if (checksum != 0.0 && coat && !coat.is_that_of(checksum))
-    error->all(FLERR, "Fix dust/detach texture is not the one of the restart file");
-  if (checksum != 0.0 && layout != carriers.layout())
+  if (*p++ != RESTART_FORMAT) error->all(FLERR, "Fix dust/detach data of the restart file are of another version");
+  const double layout = *p++, lost_mass = *p++;
+  steps = *p++;
+  const bool any = DustCoats::any_in(p);
+  p = coats.restore(p);
+  if (any && layout != carriers.layout())
     error->all(FLERR, "Fix dust/detach rotation, orientation or inertia is not that of the restart file");
-  if (checksum != 0.0 && lost_mass != double(settings.lose_mass))
+  if (any && lost_mass != double(settings.lose_mass))
     error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}",
                lost_mass != 0.0 ? "yes" : "no");
-  steps = *p++;
+  maxexchange = fixed_size() + 1 + exchange_room;
   shedding.set(p);
   p += DustShedding::SIZE;
   mine = comm->me == 0 ? DetachTotals::from(p) : DetachTotals{};

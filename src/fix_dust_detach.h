@@ -49,8 +49,8 @@ class FixDustDetach : public Fix {
   double compute_vector(int) override;
   double memory_usage() override;
 
-  // for those who draw carrier i: its texture, which is false as long as there is none, and what is left of it
-  const DustCoat &coat_of(int /*i*/) const { return coat; }
+  // for those who draw carrier i: its texture, and what is left of it
+  const DustCoat &coat_of(int i) const { return coats[carriers.coat[i]]; }
   const CarrierData &all_carriers() const { return carriers; }
 
   void grow_arrays(int) override;
@@ -71,17 +71,18 @@ class FixDustDetach : public Fix {
  private:
   DetachSettings settings;
   DeckChecks checks;
-  DeckChecks::Course course_of(const Dust::Collision &) const;
+  DeckChecks::Course course_of(int) const;    // the collision of a carrier
 
-  DustCoat coat;
-  void build();
-
+  DustCoats coats;
   CarrierData carriers;
+  const Dust::GrainTable &table_of(int i) const { return coats.table(carriers.coat[i]); }
   static constexpr int NO_CARRIER = CarrierData::NO_CARRIER, FREE_FLIGHT = CarrierData::FREE_FLIGHT,
                        AT_REST = CarrierData::AT_REST;
   double steps;      // since the fix is there
   bool newcomers;    // atoms were added that may be carriers
+  bool is_newcomer(int) const;
   void adopt();
+  void adopt(int);
   void weigh();
 
   // collisions under way on this rank
@@ -118,7 +119,7 @@ class FixDustDetach : public Fix {
   void share_exchange_room();
   int fixed_size() const;
   int packed_size(int) const;
-  static constexpr int NEWCOMER = -1;    // in what an atom that is no carrier takes along
+  enum { NEWCOMER = -1, NO_DATA = 0, CARRIER = 1 };    // what an atom takes along
   void pack(int, bool, Dust::Packer &) const;
   int pack_with_size(int, bool, double *) const;
   void unpack(int, const double *);

@@ -52,7 +52,7 @@ void FixDustDetach::follow(int i)
   if (!acts) {
     Dust::Motion motion = motion_of(i);
     for (double &w : motion.spin) w = 0.0;
-    acts = coat.table->may_move(motion);
+    acts = table_of(i).may_move(motion);
   }
   if (acts)
     collide(i);

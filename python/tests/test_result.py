@@ -19,6 +19,21 @@ def test_there_and_back(tmp_path, resolved_result):
     assert [path.name for path in tmp_path.iterdir()] == ["results.csv"]
 
 
+def test_records_older_than_a_parameter_have_its_default(tmp_path, resolved_result):
+    path = tmp_path / "results.csv"
+    write_csv(path, [replace(resolved_result, spread=2.5), resolved_result])
+    header, wide, row = path.read_text().splitlines()
+    column = header.split(",").index("spread")
+    assert wide.split(",")[column] == "2.5"
+    assert read_csv(path)[0].spread == 2.5
+    lines = [line.split(",") for line in (header, row)]
+    path.write_text("".join(",".join(line[:column] + line[column + 1 :]) + "\n" for line in lines))
+    assert read_csv(path) == [resolved_result]
+    old = resolved_result.to_json().replace('"spread": 1.0, ', "")
+    assert "spread" not in old
+    assert Result.from_json(old) == resolved_result
+
+
 @pytest.fixture
 def table(tmp_path, resolved_result):
     """A table of two rows, and its file."""

@@ -64,9 +64,27 @@ def test_the_documented_format(tmp_path):
     assert texture.centres[2].tolist() == [0, 0, pytest.approx(0.765e-3)]
 
 
+def test_a_spread_of_adhesion_is_kept(command, tmp_path):
+    small = SMALL.replace("texture 1", "texture 2").replace("2e-5\n", "2e-5 0.5\n").replace("3e-5", "3e-5 4")
+    (tmp_path / "t.txt").write_text(small)
+    assert read_texture(tmp_path / "t.txt").adhesion.tolist() == [0.5, 0.5, 4]
+    (tmp_path / "t.txt").write_text(SMALL)
+    assert read_texture(tmp_path / "t.txt").adhesion.tolist() == [1, 1, 1]
+    # the same grains with and without; half of them below the median, within three standard deviations
+    for spread in ("1", "2"):
+        assert command("texture", "make", "--spread", spread, "--out", f"{spread}.txt").returncode == 0
+    alike, spread_out = (read_texture(tmp_path / f"{spread}.txt") for spread in ("1", "2"))
+    assert (alike.directions == spread_out.directions).all()
+    assert (alike.adhesion == 1).all()
+    logs = np.log2(spread_out.adhesion)
+    assert abs(logs.mean()) < 3 / math.sqrt(4500)
+    assert abs(logs.std() - 1) < 3 / math.sqrt(2 * 4500)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
+        ("# dust texture 1", "# dust texture 2", "line 6: 5 numbers should be here, not 4"),
         ("# dust texture 1", "# something", "line 1: "),
         ("carrier_diameter 1.5e-3", "carrier_diameter 0", "line 2: "),
         ("carrier_diameter", "carrier", "line 2: 'carrier_diameter' should be here"),

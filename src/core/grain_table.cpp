@@ -6,6 +6,7 @@
 
 #include "geometry.h"
 #include "jkr.h"
+#include "normal_motion.h"
 #include "patch_bits.h"
 #include "sticking_criteria.h"
 #include "tangential_law.h"
@@ -50,8 +51,8 @@ void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
 /* ---------------------------------------------------------------------- */
 
 GrainTable::GrainTable(const Texture &texture, const Material &material, const Criteria &criteria) :
-    matter(material), asked(criteria), law(tangential_law(criteria.tangential)), rp(texture.carrier_radius),
-    sites(texture.grains.size())
+    matter(material), asked(criteria), ring(material.damping >= 0.0 ? Dust::overshoot(material.damping) : 0.0),
+    law(tangential_law(criteria.tangential, ring > 0.0)), rp(texture.carrier_radius), sites(texture.grains.size())
 {
   const int n = grains();
   all.assign((n + PATCH - 1) / PATCH, ~uint64_t(0));
@@ -83,8 +84,9 @@ void GrainTable::fill_sites(const Texture &texture)
     const double r12 = effective_radius(rp, g.radius);
     Site &site = sites[bit];
     std::copy_n(g.n, 3, site.n);
-    site.hold = pull_off_force(matter.gamma, r12) / mass_of(g);
-    site.lever = equilibrium_contact_radius(matter.gamma, r12, matter.modulus) / g.radius;
+    const double gamma = matter.gamma * g.adhesion;    // F_c goes with it, a0 with its cube root
+    site.hold = pull_off_force(gamma, r12) / mass_of(g);
+    site.lever = equilibrium_contact_radius(gamma, r12, matter.modulus) / g.radius;
     site.shell = rp + g.radius;
     site.weight = mass_of(g) / mass;
     site.grain = order[bit];

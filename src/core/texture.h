@@ -27,6 +27,8 @@ struct BareCap {
 struct Grain {
   double n[3];
   double radius;
+  //! factor of its pull-off force, from grain to grain (adhesion_spread.h); a0 goes with its cube root
+  double adhesion = 1.0;
 };
 
 /*! The grains that adhere to a carrier, as they touch it: centres at carrier_radius + radius */

@@ -74,4 +74,9 @@ void dust_texture_table(const DustTexture *texture, double *table)
   }
 }
 
+void dust_texture_adhesion(const DustTexture *texture, double *factors)
+{
+  for (const Dust::Grain &grain : texture->texture.grains) *factors++ = grain.adhesion;
+}
+
 void dust_texture_free(DustTexture *texture) { delete texture; }

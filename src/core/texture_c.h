@@ -47,6 +47,11 @@ DUST_EXPORT long long dust_texture_grains(const DustTexture *);
  *  \param table  room for 4 dust_texture_grains() numbers */
 DUST_EXPORT void dust_texture_table(const DustTexture *, double *table);
 
+/*! For each grain, in the same order: the factor of its pull-off force, 1 where the file has none
+ *
+ *  \param factors  room for dust_texture_grains() numbers */
+DUST_EXPORT void dust_texture_adhesion(const DustTexture *, double *factors);
+
 /*! Gives the memory back; a null pointer is ignored */
 DUST_EXPORT void dust_texture_free(DustTexture *);
 

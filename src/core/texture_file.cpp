@@ -25,7 +25,7 @@
 
 using namespace Dust;
 
-static const char FIRST_LINE[] = "# dust texture 1";
+static const char FIRST_LINE[] = "# dust texture 1", FIRST_LINE_WITH_ADHESION[] = "# dust texture 2";
 
 /* ----------------------------------------------------------------------
    numbers with the digits that tell any two of them apart, whatever the locale
@@ -38,20 +38,27 @@ static void append(std::string &text, double x)
   text.append(digits, end);
 }
 
-static void append(std::string &text, const double *n, double last)
+static void append(std::string &text, const Grain &grain, bool with_adhesion)
 {
-  for (int d = 0; d < 3; d++) {
-    append(text, n[d]);
+  for (const double x : grain.n) {
+    append(text, x);
     text += ' ';
   }
-  append(text, last);
+  append(text, 2.0 * grain.radius);
+  if (with_adhesion) {
+    text += ' ';
+    append(text, grain.adhesion);
+  }
   text += '\n';
 }
 
 // hands the text to put() in pieces
 template <typename Put> static void put_texture(const Texture &texture, Put put)
 {
-  std::string text = std::string(FIRST_LINE) + "\ncarrier_diameter ";
+  const bool with_adhesion = std::any_of(texture.grains.begin(), texture.grains.end(),
+                                         [](const Grain &grain) { return grain.adhesion != 1.0; });
+  std::string text = with_adhesion ? FIRST_LINE_WITH_ADHESION : FIRST_LINE;
+  text += "\ncarrier_diameter ";
   append(text, 2.0 * texture.carrier_radius);
   text += "\nbare ";
   append(text, texture.bare.half_angle);
@@ -59,10 +66,11 @@ template <typename Put> static void put_texture(const Texture &texture, Put put)
     text += ' ';
     append(text, x);
   }
-  text += "\ngrains " + std::to_string(texture.grains.size()) + "\n# nx ny nz diameter\n";
+  text += "\ngrains " + std::to_string(texture.grains.size()) + "\n# nx ny nz diameter";
+  text += with_adhesion ? " adhesion\n" : "\n";
   constexpr size_t PIECE = 1 << 20;
   for (const Grain &grain : texture.grains) {
-    append(text, grain.n, 2.0 * grain.radius);
+    append(text, grain, with_adhesion);
     if (text.size() < PIECE) continue;
     put(text);
     text.clear();
@@ -184,10 +192,15 @@ class Lines {
       if (!get()) fail("the file ends where " + expected + " should be: it is cut off");
     } while (skipped());
   }
-  void first()
+  // whether the grains have factors of their adhesion
+  bool first()
   {
-    if (!get() || line != FIRST_LINE)
-      fail(std::string("a texture file starts with '") + FIRST_LINE + "', not with " + shown(line));
+    const bool any = get();
+    if (any && line == FIRST_LINE_WITH_ADHESION) return true;
+    if (!any || line != FIRST_LINE)
+      fail(std::string("a texture file starts with '") + FIRST_LINE + "' or '" + FIRST_LINE_WITH_ADHESION +
+           "', not with " + shown(line));
+    return false;
   }
   void nothing_more()
   {
@@ -275,16 +288,19 @@ void unit_vector(const Lines &lines, const double *v, double *n)
   for (int d = 0; d < 3; d++) n[d] = v[d] * scale;
 }
 
-Grain read_grain(Lines &lines, const Texture &texture)
+Grain read_grain(Lines &lines, const Texture &texture, bool with_adhesion)
 {
-  double v[4];
-  lines.numbers("", 4, v);
+  double v[5] = {0.0, 0.0, 0.0, 0.0, 1.0};
+  lines.numbers("", with_adhesion ? 5 : 4, v);
   Grain grain;
   unit_vector(lines, v, grain.n);
   grain.radius = 0.5 * v[3];
   if (!(grain.radius > 0.0 && grain.radius < texture.carrier_radius))
     lines.fail("grain diameter " + number_text(v[3]) + " must be above 0 and below the carrier's " +
                number_text(2.0 * texture.carrier_radius));
+  grain.adhesion = v[4];
+  if (!(grain.adhesion > 0.0))
+    lines.fail("the factor of the pull-off force, " + number_text(v[4]) + ", must be above 0");
   return grain;
 }
 
@@ -296,7 +312,7 @@ Texture Dust::read_texture(std::istream &in)
 {
   Texture texture;
   Lines lines(in);
-  lines.first();
+  const bool with_adhesion = lines.first();
   double diameter, bare[4], count;
   lines.numbers("carrier_diameter", 1, &diameter);
   if (!(diameter > 0.0)) lines.fail("carrier_diameter " + number_text(diameter) + " must be above 0");
@@ -313,7 +329,7 @@ Texture Dust::read_texture(std::istream &in)
 
   std::vector<int> where;    // line of each grain
   for (int i = 0; i < static_cast<int>(count); i++) {
-    texture.grains.push_back(read_grain(lines, texture));
+    texture.grains.push_back(read_grain(lines, texture, with_adhesion));
     where.push_back(lines.at());
   }
   lines.end(texture.grains.size());

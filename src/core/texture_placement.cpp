@@ -5,6 +5,7 @@
 #include "texture_placement.h"
 
 #include "geometry.h"
+#include "random_numbers.h"
 #include "shell_grid.h"
 
 #include <algorithm>
@@ -76,11 +77,6 @@ class Placement {
   }
 
   std::vector<Grain> grains;
-
-  static double uniform(std::mt19937_64 &random)    // the standard's own distributions differ by library
-  {
-    return (random() >> 11) * 0x1.0p-53;
-  }
 
  private:
   struct Cell {    // all cells in a list have the same area, as area is dz dphi
@@ -259,13 +255,12 @@ static std::vector<double> draw_radii(const SizeDistribution &sizes, double sum_
   for (double sum = 0.0; sum < sum_of_squares;) {
     double x;
     if (sizes.kind == SizeDistribution::RRSB) {
-      x = sizes.quantile(CUT + (1.0 - 2.0 * CUT) * Placement::uniform(random));
-    } else {    // Box and Muller
-      const double r = std::sqrt(-2.0 * std::log1p(-Placement::uniform(random)));
-      x = sizes.x50 * std::pow(sizes.spread, r * std::cos(2.0 * PI * Placement::uniform(random)));
+      x = sizes.quantile(CUT + (1.0 - 2.0 * CUT) * uniform(random));
+    } else {
+      x = sizes.x50 * std::pow(sizes.spread, normal_deviate(random));
       if (x < finest || x > coarsest) continue;
     }
-    if (Placement::uniform(random) > std::pow(finest / x, 3)) continue;
+    if (uniform(random) > std::pow(finest / x, 3)) continue;
     radii.push_back(0.5 * x);
     sum += 0.25 * x * x;
   }

@@ -2,12 +2,15 @@
 
 #include "collision.h"
 
+#include "adhesion_spread.h"
+
 #include "collision_reference.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 using namespace Dust;
 
@@ -22,6 +25,7 @@ TEST(Collision, SameGrainsAsBruteForceInTenThousandRandomCollisions)
   for (int i = 0; i < 10000; i++) {
     Criteria criteria;
     criteria.ibrahim = i % 4 == 3;
+    criteria.tangential = i % 7 < 3 ? Criteria::IMPULSE : Criteria::ESTIMATE;
     if (i % 7 == 5) criteria.tangential = Criteria::FRICTIONLESS;
     if (i % 7 == 6) criteria.tangential = Criteria::OFF;
     m.friction = i % 5 == 4 ? 0.0 : 0.3;
@@ -64,6 +68,29 @@ TEST(Collision, SameGrainsAsBruteForceForGrainsOfAllSizes)
   }
 }
 
+TEST(Collision, SameGrainsAsBruteForceWithASpreadOfAdhesion)
+{
+  std::mt19937 random(3);
+  Texture texture = place_monolayer(RP, 40.0e-6, 0.15, BareCap(), 2);
+  spread_adhesion(texture, 2.5, 2);
+  Material m = CALCITE;
+  m.gamma *= 64.0;
+  int left = 0;
+  for (int i = 0; i < 600; i++) {
+    Criteria criteria;
+    criteria.ibrahim = i % 4 == 3;
+    criteria.tangential = std::vector{Criteria::IMPULSE, Criteria::ESTIMATE, Criteria::FRICTIONLESS}[i % 3];
+    const GrainTable table(texture, m, criteria);
+    const History h = random_history(random, i % 2);
+    const Outcome expected = by_brute_force(texture, m, criteria, h);
+    expect_same(by_collision(texture, table, h), expected);
+    left += expected.left.size();
+    if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
+  }
+  EXPECT_GT(left, 600 * 20);
+  EXPECT_LT(left, 600 * 180);
+}
+
 TEST(Collision, ReferenceImpactsSameAsBruteForce)
 {
   const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
@@ -85,10 +112,12 @@ TEST(Collision, NormalModeOfAStraightImpactIsTheCapOfTheClosedForm)
   for (const Vec &a : h.a) peak = std::max(peak, a.z);
   const double bare = 0.5 * (1.0 - std::cos(0.33));
   const double expected = (0.5 * (1.0 - HOLD / peak) - bare) / (1.0 - bare);
+  Criteria alone;
+  alone.tangential = Criteria::OFF;
   double found = 0.0;
   for (int seed = 1; seed <= 20; seed++) {
     const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), seed);
-    found += by_collision(texture, GrainTable(texture, CALCITE, Criteria()), h).left.size() / 4500.0 / 20.0;
+    found += by_collision(texture, GrainTable(texture, CALCITE, alone), h).left.size() / 4500.0 / 20.0;
   }
   EXPECT_NEAR(found, expected, 0.003);
 }

@@ -2,6 +2,7 @@
 
 #include "texture_c.h"
 
+#include "adhesion_spread.h"
 #include "texture_file.h"
 #include "texture_placement.h"
 
@@ -24,7 +25,8 @@ TEST(TextureC, ReadsWhatWasWritten)
   Dust::BareCap cap;
   cap.axis[0] = 0.6;
   cap.axis[2] = -0.8;
-  const Dust::Texture wanted = Dust::place_monolayer(0.75e-3, 10.0e-6, 0.1, cap, 7);
+  Dust::Texture wanted = Dust::place_monolayer(0.75e-3, 10.0e-6, 0.1, cap, 7);
+  Dust::spread_adhesion(wanted, 2.0, 7);
   Dust::write_texture_file(wanted, PATH);
   char message[256] = "before";
   DustTexture *texture = dust_texture_read(PATH, message, sizeof(message));
@@ -46,6 +48,10 @@ TEST(TextureC, ReadsWhatWasWritten)
     ASSERT_EQ(table[4 * k + 3], 20.0e-6);
   }
   EXPECT_EQ(table.back(), -7.0);
+  std::vector<double> factors(2250 + 1, -7.0);
+  dust_texture_adhesion(texture, factors.data());
+  for (size_t k = 0; k < 2250; k++) ASSERT_EQ(factors[k], wanted.grains[k].adhesion);
+  EXPECT_EQ(factors.back(), -7.0);
   dust_texture_free(texture);
   dust_texture_free(nullptr);
   std::remove(PATH);

@@ -2,6 +2,7 @@
 
 #include "texture_file.h"
 
+#include "adhesion_spread.h"
 #include "texture_placement.h"
 
 #include <gtest/gtest.h>
@@ -102,6 +103,36 @@ TEST(TextureFile, Text)
                         "0.10000000000000001 0.20000000000000001 0.97467943448089633 9.9999999999999995e-08\nend\n");
 }
 
+TEST(TextureFile, FactorsOfTheAdhesionAreKept)
+{
+  Texture t;
+  t.carrier_radius = 0.75e-3;
+  t.grains = {{{0.6, -0.8, 0.0}, 1e-5, 0.25}, {{0.0, 0.6, 0.8}, 1e-5}};
+  const std::string text = written(t);
+  EXPECT_EQ(text,
+            "# dust texture 2\ncarrier_diameter 0.0015\nbare 0.33000000000000002 0 0 -1\ngrains 2\n"
+            "# nx ny nz diameter adhesion\n0.59999999999999998 -0.80000000000000004 0 2.0000000000000002e-05 0.25\n"
+            "0 0.59999999999999998 0.80000000000000004 2.0000000000000002e-05 1\nend\n");
+  Texture spread = monolayer(5);
+  spread_adhesion(spread, 2.0, 5);
+  std::istringstream in(written(spread));
+  const Texture back = read_texture(in);
+  ASSERT_EQ(back.grains.size(), spread.grains.size());
+  for (size_t k = 0; k < spread.grains.size(); k++) ASSERT_EQ(back.grains[k].adhesion, spread.grains[k].adhesion);
+  // a file without them, as ever
+  std::istringstream plain(HEAD + "0 0 1 0.1\n1 0 0 0.1\nend\n");
+  for (const Grain &grain : read_texture(plain).grains) EXPECT_EQ(grain.adhesion, 1.0);
+}
+
+TEST(TextureFile, SaysWhatIsWrongWithFactors)
+{
+  const std::string head = "# dust texture 2\ncarrier_diameter 2\nbare 0.3 0 0 -1\ngrains 1\n";
+  EXPECT_EQ(message(head + "0 0 1 0.1 2\nend\n"), "no error");
+  EXPECT_EQ(message(head + "0 0 1 0.1\nend\n"), "line 5: 5 numbers should be here, not 4");
+  EXPECT_EQ(message(head + "0 0 1 0.1 0\nend\n"), "line 5: the factor of the pull-off force, 0, must be above 0");
+  EXPECT_EQ(message(head + "0 0 1 0.1 nan\nend\n"), "line 5: 'nan' is not a finite number");
+}
+
 TEST(TextureFile, CommentsBlankLinesAndNumbers)
 {
   const std::string end = "carrier_diameter 2\nbare 0 0 0 -1\ngrains 2\n0 0 1 0.1\n0 0 -1 0.1\nend\n";
@@ -131,10 +162,12 @@ TEST(TextureFile, EachRuleNamesTheLineAndWhatIsAllowed)
     EXPECT_EQ(message(text), complaint) << text;
   };
   const std::string one = "# dust texture 1\n", two = one + "carrier_diameter 2\n", three = two + "bare 0.3 0 0 -1\n";
-  is("", "line 1: a texture file starts with '# dust texture 1', not with ''");
-  is("grains 3\n", "line 1: a texture file starts with '# dust texture 1', not with 'grains 3'");
-  is("# dust texture 2\n", "line 1: a texture file starts with '# dust texture 1', not with '# dust texture 2'");
-  is(" # dust texture 1\n", "line 1: a texture file starts with '# dust texture 1', not with ' # dust texture 1'");
+  is("", "line 1: a texture file starts with '# dust texture 1' or '# dust texture 2', not with ''");
+  is("grains 3\n", "line 1: a texture file starts with '# dust texture 1' or '# dust texture 2', not with 'grains 3'");
+  is("# dust texture 3\n",
+     "line 1: a texture file starts with '# dust texture 1' or '# dust texture 2', not with '# dust texture 3'");
+  is(" # dust texture 1\n",
+     "line 1: a texture file starts with '# dust texture 1' or '# dust texture 2', not with ' # dust texture 1'");
   is(one, "line 2: the file ends where 'carrier_diameter' should be: it is cut off");
   is(one + "bare 0.3 0 0 -1\n", "line 2: 'carrier_diameter' should be here, not 'bare 0.3 0 0 -1'");
   is(one + "carrier_diameter\n", "line 2: 1 numbers should be here, not 0");
@@ -317,5 +350,6 @@ TEST(TextureFile, WhatCannotBeRead)
   EXPECT_EQ(error(folder.path.string()), "it cannot be read: Is a directory");
   EXPECT_EQ(error(""), "it cannot be read: No such file or directory");
   std::ofstream(folder / "empty.txt").close();
-  EXPECT_EQ(error(folder / "empty.txt"), "line 1: a texture file starts with '# dust texture 1', not with ''");
+  EXPECT_EQ(error(folder / "empty.txt"),
+            "line 1: a texture file starts with '# dust texture 1' or '# dust texture 2', not with ''");
 }

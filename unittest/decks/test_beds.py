@@ -18,6 +18,7 @@ GRAIN_MASS = 3.141592653589793 / 6 * 20e-6**3 * 2700
 
 DROP = {"carriers": "60", "tube": "8e-3", "settle": "0.04", "rest": "1e-3", "splash": "3e-3"}
 DRUM = {"carriers": "200", "drum": "20e-3", "lifter": "1e-3", "rate": "150", "turns": "0.04", "settle": "5e-3"}
+SIEVE = {"carriers": "80", "tube": "10e-3", "settle": "0.04", "splash": "3e-3"}
 POUR = {"carriers": "100", "time": "0.1", "slope": "60", "speed": "3"}
 
 
@@ -151,6 +152,23 @@ def test_poured_carriers_come_with_their_grains_and_leave_with_the_rest(tmp_path
             assert row["f_dust[2]"] + row["f_dust[3]"] + row["f_dust[4]"] == 4500 * row["f_pour"]
 
 
+def test_three_sieve_fractions_in_one_fix(tmp_path):
+    text = output("in.sieve", tmp_path, **SIEVE)
+    grains = {1.5e-3: 4500, 1.2e-3: 2880, 1.0e-3: 2000}
+    placed = re.findall(r"(\d+) grains a carrier of diameter (\S+),", text)
+    assert {float(diameter): int(number) for number, diameter in placed} == grains
+    poured, last = table(text)[0], table(text)[-1]
+    numbers = [last[f"c_number[{k}]"] for k in (1, 2, 3)]
+    assert sum(numbers) == 80
+    assert min(numbers) > 5
+    # what the fix says of all is what the fractions lost
+    off = [last[f"v_off{k}"] for k in (1, 2, 3)]
+    brought = [n * number for n, number in zip(numbers, sorted(grains.values()), strict=True)]
+    assert last["f_dust"] == pytest.approx(sum(map(float.__mul__, off, brought)) / sum(brought), rel=1e-6)
+    assert poured["f_dust"] < 0.8 * last["f_dust"]
+    assert number(r"^off in all: (\S+) of the fine", text) == pytest.approx(off[0], abs=1e-4)
+
+
 @pytest.mark.parametrize(
     ("deck", "variable", "value"),
     [
@@ -164,6 +182,10 @@ def test_poured_carriers_come_with_their_grains_and_leave_with_the_rest(tmp_path
         ("in.drop", "stiffen", "0"),
         ("in.drop", "every", "0"),
         ("in.drop", "tube", "1e-3"),
+        ("in.sieve", "height", "-1"),
+        ("in.sieve", "fine", "1.3e-3"),
+        ("in.sieve", "tube", "1e-3"),
+        ("in.sieve", "stiffen", "0.1"),
         ("in.pour", "speed", "-1"),
         ("in.pour", "slope", "70"),
         ("in.pour", "stiffen", "0"),

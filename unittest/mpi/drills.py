@@ -21,10 +21,11 @@ from pathlib import Path
 
 from ranks import run_ranks
 
-BARE = math.pi / 6.0 * 1.5e-3**3 * 7700.0
+LARGEST = 1.5e-3  # diameter of a carrier
+BARE = math.pi / 6.0 * LARGEST**3 * 7700.0
 GRAIN = math.pi / 6.0 * 100e-6**3 * 2700.0
 SOFT = "hertz/material 210e6 0.7 0.3 tangential mindlin NULL 0 0.05 damping coeff_restitution/limited"
-COLUMNS = "id type mass x y z vx vy vz f_dust[1] f_dust[2]"
+COLUMNS = "id type mass x y z vx vy vz f_dust[1] f_dust[2] diameter"
 ROWS = " ".join(f"f_dust[{n}]" for n in (1, 2, 3, 5, 9, 10, 11))
 MASS, MOMENTUM = 1e-12, 1e-11  # relative: sums of some thousand terms
 
@@ -49,8 +50,19 @@ class Atom:
     v: Vector
     attached: float
     lost: float
+    diameter: float
     id: int = field(compare=False)
     x: Vector = field(compare=False)
+
+    @property
+    def bare(self) -> float:
+        """Mass of a carrier without grains."""
+        return math.pi / 6.0 * self.diameter**3 * 7700.0
+
+    @property
+    def grains_at_first(self) -> int:
+        """With a coverage of 0.15."""
+        return round(0.6 * (self.diameter / 100e-6) ** 2)
 
 
 @dataclass
@@ -76,7 +88,7 @@ class State:
     @property
     def new(self) -> list[Atom]:
         """Carriers without the mass of their grains: it comes when the first run starts."""
-        return [a for a in self.atoms if a.kind == 1 and a.lost == 0.0 and abs(a.mass - BARE) < 1e-9 * BARE]
+        return [a for a in self.atoms if a.kind == 1 and a.lost == 0.0 and abs(a.mass - a.bare) < 1e-9 * BARE]
 
     @property
     def unknown(self) -> list[Atom]:
@@ -101,7 +113,7 @@ def read_state(dump: Path, words: list[str]) -> State:
     for line in dump.read_text().split("ITEM: ATOMS")[1].splitlines()[1:]:
         w = line.split()
         x, v = tuple(float(t) for t in w[3:6]), tuple(float(t) for t in w[6:9])
-        atoms.append(Atom(int(w[1]), float(w[2]), v, float(w[9]), float(w[10]), int(w[0]), x))
+        atoms.append(Atom(int(w[1]), float(w[2]), v, float(w[9]), float(w[10]), float(w[11]), int(w[0]), x))
     if len({a.id for a in atoms}) != len(atoms):
         raise Open("IDs exist twice")
     return State(int(words[0]), [float(w) for w in words[1:]], atoms)
@@ -130,8 +142,9 @@ class Command:
 class Commands:
     """Draws them."""
 
-    def __init__(self, draw: random.Random) -> None:
+    def __init__(self, draw: random.Random, sizes: bool) -> None:
         self.draw = draw
+        self.sizes = sizes
 
     def any(self) -> Command:
         kinds = [self.run] * 5 + [self.delete, self.create, self.displace, self.velocity, self.spin, self.other]
@@ -163,7 +176,9 @@ class Commands:
     def atoms(self, kind: int, number: int) -> list[str]:
         """Lines that make atoms in the middle of the box, which fly to its centre, so that they meet."""
         seed, rate = self.draw.randint(1, 10**6), self.draw.uniform(800.0, 2500.0)
-        size, density = ("1.5e-3", "7700") if kind == 1 else ("100e-6", "2700")
+        size, density = (str(LARGEST), "7700") if kind == 1 else ("100e-6", "2700")
+        if kind == 1 and self.sizes:
+            size = "v_size"
         return [
             "region middle block -3e-3 3e-3 -3e-3 3e-3 -3e-3 3e-3",
             "group before union all",
@@ -171,6 +186,7 @@ class Commands:
             "group new subtract all before",
             "group before delete",
             "region middle delete",
+            f"variable size atom {LARGEST}-2e-4*(id%3)",
             f"set group new diameter {size}",
             f"set group new density {density}",
             *(f"variable v{c} atom -{rate}*{c}+{self.draw.uniform(0.0, 1.0)}" for c in "xyz"),
@@ -206,7 +222,8 @@ class Drill:
 
     def __init__(self, seed: int, folder: Path) -> None:
         self.draw = random.Random(seed)
-        self.commands = Commands(self.draw)
+        sizes = seed % 3 == 2
+        self.commands = Commands(self.draw, sizes)
         self.folder = folder
         self.emit = seed % 2 == 1
         self.boundary = ("p p p", "f f f", "s s s", "p p s")[seed // 2 % 4]
@@ -216,12 +233,12 @@ class Drill:
             "fix dust carriers dust/detach texture monolayer 100e-6 coverage 0.15 seed 3 stiffen 1000 "
             f"orientation random 5 tangential {self.draw.choice(('estimate', 'integrate'))} every {every} "
             + ("emit 2" if self.emit else "mass yes")
+            + (" sizes 0" if sizes else "")
         )
         check, often = self.draw.choice(("yes", "no")), self.draw.choice((1, 7, 50))
         self.neighbour = f"neigh_modify every {often} delay 0 check {check} one 10000 page 200000"
         self.act = self.states = 0
         self.state: State | None = None  # the last one in the books
-        self.grains_at_first = 0.0  # of a carrier
         self.taken = 0.0  # grains that were on carriers that have been deleted
         self.rows: Rows = {}  # that belong to the play; `entered` are in the books
         self.entered: set[tuple[float, float, float]] = set()
@@ -320,8 +337,6 @@ class Drill:
         before, self.state = self.state, after
         if before is None:
             return
-        if not self.grains_at_first and after.totals[0]:
-            self.grains_at_first = after.totals[0] / sum(a.kind == 1 for a in after.atoms)
         if command.kind == "run":
             self.check_run(before, after)
         elif command.kind == "create":
@@ -334,8 +349,9 @@ class Drill:
 
     def gained(self, before: State) -> tuple[float, Vector]:
         """Mass and momentum that new carriers get with their grains."""
-        mass = self.grains_at_first * GRAIN
-        return mass * len(before.new), tuple(mass * math.fsum(a.v[d] for a in before.new) for d in range(3))
+        masses = [a.grains_at_first * GRAIN for a in before.new]
+        momentum = (math.fsum(mass * a.v[d] for mass, a in zip(masses, before.new, strict=True)) for d in range(3))
+        return math.fsum(masses), tuple(momentum)
 
     def check_run(self, before: State, after: State) -> None:
         mass, momentum = self.gained(before)
@@ -356,8 +372,8 @@ class Drill:
         if command.goes:
             gone = [a for a in before.atoms if command.goes(a)]
             self.taken += sum(a.attached for a in gone)
-            if after.totals[0] - before.totals[0] == self.grains_at_first * len(before.unknown):
-                self.taken += self.grains_at_first * sum(a in before.unknown for a in gone)  # had got them before
+            if after.totals[0] - before.totals[0] == sum(a.grains_at_first for a in before.unknown):
+                self.taken += sum(a.grains_at_first for a in gone if a in before.unknown)  # had got them before
             before = State(before.step, before.totals, [a for a in before.atoms if not command.goes(a)])
         if command.velocity:
             for a in after.atoms:
@@ -392,7 +408,7 @@ class Drill:
         if not self.emit:
             for a in state.atoms:
                 if a.kind == 1 and a not in state.new:
-                    close(a.mass, BARE + a.attached * GRAIN, 1e-11 * BARE, f"mass of carrier {a.id}")
+                    close(a.mass, a.bare + a.attached * GRAIN, 1e-11 * BARE, f"mass of carrier {a.id}")
 
 
 def drill(seed: int, folder: Path, acts: int = 3) -> State:

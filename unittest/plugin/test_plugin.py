@@ -136,6 +136,7 @@ SHORTER = {
     "in.drum": "-var carriers 200 -var drum 20e-3 -var lifter 1e-3 -var turns 0.02 -var settle 5e-3 -var dump carriers",
     "in.drop": "-var carriers 60 -var tube 8e-3 -var settle 0.02 -var rest 2e-4 -var splash 2e-3 -var field field",
     "in.chute": "-var carriers 100 -var time 0.05 -var dump carriers",
+    "in.sieve": "-var carriers 60 -var tube 10e-3 -var settle 0.02 -var splash 1e-3 -var dump carriers",
     "in.pour": "-var carriers 100 -var time 0.03 -var dump carriers",
 }
 

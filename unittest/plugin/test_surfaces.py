@@ -230,7 +230,7 @@ WALL = "fix wall all surface/global input stl 1 1 square.stl model * * granular 
         ),
         (
             impact("local", PLACES[0], velocity(8, 90)).replace("fix dust carriers", "fix dust all"),
-            "group all has triangles or lines, such as atom 2, which are no carriers",
+            "carriers must be spheres, and atom 2 is a triangle or line",
         ),
         (impact("global", PLACES[0], velocity(8, 90), (0.0, 0.0, 1.0)), "is moved by fix_modify"),
         (with_wall(f"model * * granular {STEEL}", f"{DUST} emit 2"), r"emit 2 does not know the surfaces of fix wall"),

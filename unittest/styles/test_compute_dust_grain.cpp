@@ -150,6 +150,30 @@ TEST(ComputeDustGrain, GrainsStayTogetherAtAPeriodicBorder)
   EXPECT_GT(beyond, 1000.0);
 }
 
+// each carrier has the texture of its class on its own radius
+TEST(ComputeDustGrain, GrainsOfManySizes)
+{
+  Deck deck;
+  deck.box();
+  deck.carrier(0, 0, 0.003, 0, 0, 0);
+  deck.carrier(0.004, 0, 0.003, 0, 0, 0);
+  deck("set atom 2 diameter 1.2e-3\nfix move all nve/sphere");
+  grains_of(deck, REFERENCE_DUST + " sizes 0.05");
+  deck("run 1 post no");
+  std::map<int, int> number;
+  for (const Row &row : grains(deck)) {
+    const int id = static_cast<int>(row[0]);
+    const double *x = deck.atom("x", id), radius = id == 1 ? RADIUS : 0.6e-3;
+    const double r[3] = {row[3] - x[0], row[4] - x[1], row[5] - x[2]};
+    EXPECT_NEAR(std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), radius + 10e-6, 1e-11);
+    EXPECT_NEAR(row[7], 2.0 * radius, 0.05 * radius);
+    number[id]++;
+  }
+  EXPECT_EQ(number[1], deck.columns(1)[0]);
+  EXPECT_EQ(number[2], deck.columns(2)[0]);
+  EXPECT_LT(number[2], 0.7 * number[1]);
+}
+
 TEST(ComputeDustGrain, WrongWords)
 {
   Deck deck;

@@ -5,6 +5,7 @@
 #include "hamaker.h"
 #include "jkr.h"
 #include "quaternion.h"
+#include "texture_file.h"
 
 #include <algorithm>
 #include <array>
@@ -96,6 +97,53 @@ TEST(CreateDust, GrainsSitAtTheEquilibriumOverlapAndMoveWithTheirCarrier)
       ASSERT_NEAR(v[1], vp[1] + w[2] * r[0] - w[0] * r[2], 1e-14);
       ASSERT_NEAR(v[2], vp[2] + w[0] * r[1] - w[1] * r[0], 1e-14);
     }
+}
+
+// five types, classes of factors from 1/8 to 8, of a factor 8^(2/5) each
+TEST(CreateDust, ASpreadOfAdhesionGoesIntoTypesAndOverlaps)
+{
+  Deck deck;
+  deck("units si\natom_style sphere\natom_modify map array\nboundary p p f\n"
+       "region box block -0.002 0.002 -0.002 0.002 -0.002 0.004\ncreate_box 7 box");
+  deck.carrier(0.0, 0.0, 0.001, 0.0, 0.0, 0.0);
+  const std::string dust = "create_dust all type 2 texture monolayer 20e-6 coverage 0.01 seed 3 spread 2.5 ";
+  const auto refused = [&](const std::string &words, const char *what) {
+    const std::string message = deck.attempt(dust + words);
+    EXPECT_NE(message.find(what), std::string::npos) << words << " -> " << message;
+  };
+  refused("", "needs classes K LOW HIGH");
+  refused("classes 7 0.125 8", "classes K value 7 must be a whole number from 1 to 6");
+  refused("classes 5 0.125 0.1", "classes HIGH value 0.1 must be above 0.125");
+  refused("classes 5 0 1", "classes LOW value 0 must be above 0");
+  ASSERT_EQ(lammps_get_natoms(deck.lmp), 1.0);
+  deck(dust + "classes 5 0.125 8 write dust_classes.txt");
+  const Dust::Texture texture = Dust::read_texture_file("dust_classes.txt");
+  std::remove("dust_classes.txt");
+  ASSERT_EQ(texture.grains.size(), 225u);
+  const auto *type = static_cast<int *>(lammps_extract_atom(deck.lmp, "type"));
+  int number[7] = {};
+  for (int i = 0; i < 225; i++) {
+    // the atoms are in the order of their IDs still
+    const int k = type[i + 1] - 2;
+    ASSERT_GE(k, 0);
+    ASSERT_LT(k, 5);
+    number[k]++;
+    const double factor = texture.grains[i].adhesion, middle = 0.125 * std::pow(64.0, (k + 0.5) / 5.0);
+    const double half = std::pow(64.0, 0.1);
+    if (k > 0) {
+      ASSERT_GE(factor, middle / half * (1.0 - 1e-12));
+    }
+    if (k < 4) {
+      ASSERT_LT(factor, middle * half * (1.0 + 1e-12));
+    }
+    const double *x = deck.atom("x", i + 2), z = x[2] - 0.001;
+    const double overlap = Dust::equilibrium_overlap(A0, R12) * std::pow(middle, 2.0 / 3.0);
+    ASSERT_NEAR(std::sqrt(x[0] * x[0] + x[1] * x[1] + z * z), 0.76e-3 - overlap, 1e-17);
+  }
+  EXPECT_GT(number[2], number[1]);
+  EXPECT_GT(number[2], number[3]);
+  EXPECT_GT(number[0], 0);
+  EXPECT_GT(number[4], 0);
 }
 
 TEST(CreateDust, RandomOrientationTurnsTheGrainsByTheCarriersID)
@@ -333,8 +381,8 @@ TEST(CreateDust, WrongInputIsNamed)
   for (const char *word : {"friction 0.3", "tangential off", "emit 2", "colour red"})
     names(ok + " " + word, std::string("Create_dust has no keyword ") +
                                std::string(word).substr(0, std::string(word).find(' ')) +
-                               ": use texture, coverage, seed, bare, distribution, density, hamaker, surface, elastic, "
-                               "orientation or write");
+                               ": use texture, coverage, seed, bare, distribution, spread, density, hamaker, surface, "
+                               "elastic, orientation, write or classes");
   // the lowest grains would be below the box, which ends at -2 mm
   const std::string message = error(ok, "set atom 1 z -0.0013");
   EXPECT_NE(message.find("grains would lie outside the box"), std::string::npos) << message;

@@ -18,7 +18,7 @@ from typing import NoReturn, TypeAlias
 from .cases import NAMED, named_or_file, with_methods
 from .errors import DustError, InvalidInput, one_line
 from .files import writable_file
-from .impact import METHODS, PARAMETER_TYPES, TANGENTIAL, Impact, option
+from .impact import METHODS, PARAMETER_TYPES, RINGING, TANGENTIAL, Impact, option
 from .result import Result
 from .version import __version__
 
@@ -33,15 +33,16 @@ _HELP = {
     "carrier_diameter": "m",
     "hamaker": "A_12 of grain and carrier, J; that of two grains stays at 10.1e-20 in a resolved run",
     "z0": "separation at which van der Waals force and pull-off force are equal, m",
+    "spread": "geometric standard deviation of the grains' pull-off forces; 1: all alike",
     "friction": "mu_f of grain and carrier",
     "wall_friction": "mu of carrier and wall",
-    "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential integrate",
+    "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential " + " or ".join(RINGING),
     "seed": "of the random texture",
     "tangential": "tangential lift-off: " + ", ".join(TANGENTIAL),
     "timestep": "s",
 }
 _Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
-_TEXTURE = ("coverage", "bare", "grain_diameter", "carrier_diameter", "seed")
+_TEXTURE = ("coverage", "bare", "grain_diameter", "carrier_diameter", "spread", "seed")
 
 
 class _Parser(argparse.ArgumentParser):

@@ -55,6 +55,7 @@ class DetachRow(IntEnum):
     VX = 8
     VY = 9
     VZ = 10
+    TEXTURE = 11
 
 
 @unique
@@ -68,6 +69,7 @@ class GrainRow(IntEnum):
     Y = 4
     Z = 5
     LOST = 6
+    TEXTURE = 7
 
 
 @unique

@@ -12,7 +12,9 @@ import numpy as np
 from .errors import InvalidInput, shown
 
 METHODS = ("functions", "resolved")
-TANGENTIAL = ("estimate", "integrate", "frictionless", "off")
+#: laws of tangential lift-off that know how a grain's contact rings
+RINGING = ("impulse", "integrate")
+TANGENTIAL = ("impulse", "estimate", "integrate", "frictionless", "off")
 
 #: share of a surface that random sequential placement of discs covers before it jams
 JAMMING = 0.547
@@ -81,13 +83,16 @@ class Impact:
         carrier_diameter: d_p, m, above 0 and at most 1.
         hamaker: A_12 of grain and carrier, J, 1e-22 to 1e-17.
         z0: separation at which the van der Waals force equals the pull-off force, m, 1e-11 to 1e-7.
+        spread: geometric standard deviation of the grains' pull-off forces, from 1 (all alike) to 100; hamaker and z0
+            give their median.
         friction: mu_f between grain and carrier, from 0 to 10.
         wall_friction: mu between carrier and wall, from 0 to 10.
         grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0: below 1 grains ring, and more
-            of them leave; resolved runs and ``tangential="integrate"`` use it.
+            of them leave; resolved runs and `RINGING` laws use it.
         seed: of the random texture, 1 to 900000000.
-        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``integrate`` (each grain's own sliding and
-            rolling), ``frictionless`` (Eq. 4) or ``off``; resolved runs do not use it.
+        tangential: lift-off on the far side: ``impulse`` (friction as a momentum, rolling as its limit), ``estimate``
+            (Eqs. 4-6), ``integrate`` (each grain's own sliding and rolling), ``frictionless`` (Eq. 4) or ``off``;
+            resolved runs do not use it.
         rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs always
             follow it.
         timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
@@ -107,11 +112,12 @@ class Impact:
     carrier_diameter: float = 1.5e-3
     hamaker: float = 14.633e-20
     z0: float = 0.4e-9
+    spread: float = 1.0
     friction: float = 0.3
     wall_friction: float = 0.05
     grain_damping: float = 1.0
     seed: int = 1
-    tangential: str = "estimate"
+    tangential: str = "impulse"
     rotation: bool = True
     timestep: float = 1e-9
 
@@ -134,6 +140,7 @@ class Impact:
         _above("coverage", self.coverage, 0.0, self.largest_coverage, "(random placement jams there)")
         _from("hamaker", self.hamaker, 1e-22, 1e-17, "J")
         _from("z0", self.z0, 1e-11, 1e-7, "m")
+        _from("spread", self.spread, 1.0, 100.0)
         _from("friction", self.friction, 0.0, 10.0)
         _from("wall_friction", self.wall_friction, 0.0, 10.0)
         _from("grain_damping", self.grain_damping, 0.0, 100.0)
@@ -216,10 +223,12 @@ class Impact:
     def grain_period(self) -> float:
         """Period of a grain that oscillates about its equilibrium overlap on the carrier, 2 pi sqrt(m_d/k_0), s.
 
-        k_0 = 6/5 E* a_0 with a_0 = (A R_12^2/(2 z0^2 E*))^(1/3).
+        k_0 = 6/5 E* a_0 with a_0 = (A R_12^2/(2 z0^2 E*))^(1/3); with a spread that of the grains that hold hardest, at
+        three standard deviations, as the deck of resolved runs has them.
         """
+        hardest = self.hamaker * self.spread**3
         effective = 1 / (2 / self.grain_diameter + 2 / self.carrier_diameter)
-        contact_radius = (self.hamaker * effective**2 / (2 * self.z0**2 * GRAIN_MODULUS)) ** (1 / 3)
+        contact_radius = (hardest * effective**2 / (2 * self.z0**2 * GRAIN_MODULUS)) ** (1 / 3)
         mass = math.pi / 6 * self.grain_diameter**3 * GRAIN_DENSITY
         return 2 * math.pi * math.sqrt(mass / (1.2 * GRAIN_MODULUS * contact_radius))
 

@@ -8,7 +8,7 @@ import math
 import os
 import sys
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, fields
 from io import StringIO
 from pathlib import Path
 from typing import Any, cast
@@ -49,6 +49,7 @@ class Result:
     carrier_diameter: float
     hamaker: float
     z0: float
+    spread: float = 1.0
     friction: float
     wall_friction: float
     grain_damping: float
@@ -88,12 +89,14 @@ class Result:
             raise InvalidInput("not a result: cut, or no JSON") from None
         if not isinstance(values, dict):
             raise InvalidInput(f"not a result: {shown(values)} is not an object")
-        checked: dict[str, Any] = {key: _value(key, values) for key in KEYS}
+        checked: dict[str, Any] = {key: _value(key, values) for key in KEYS if key in values or key not in _DEFAULTS}
         return cls(**checked)
 
 
 KEYS = tuple(field.name for field in fields(Result))
 _TYPES = {field.name: str(field.type) for field in fields(Result)}
+#: of parameters that are newer than some records
+_DEFAULTS = {field.name: field.default for field in fields(Result) if field.default is not MISSING}
 
 
 def _value(key: str, values: dict[str, Any]) -> str | bool | int | float | None:
@@ -142,7 +145,7 @@ def read_csv(path: str | Path) -> list[Result]:
         raise InvalidInput(f"{path}: no such file; run 'dustdetach sweep' into this folder first")
     reader = csv.DictReader(StringIO(read_text(path), newline=""))
     try:
-        missing = [key for key in KEYS if key not in (reader.fieldnames or ())]
+        missing = [key for key in KEYS if key not in (*(reader.fieldnames or ()), *_DEFAULTS)]
         if missing:
             raise InvalidInput(f"{path}: no column {missing[0]}")
         return [_row(path, reader.line_num, row) for row in reader]
@@ -155,6 +158,8 @@ def _row(path: Path, line: int, row: dict[Any, Any]) -> Result:
         raise InvalidInput(f"{path}: line {line}: more fields than columns")
     values = {}
     for key in KEYS:
+        if key in _DEFAULTS and key not in row:
+            continue
         try:
             values[key] = _field(_TYPES[key], row[key])
         except ValueError as error:

@@ -31,6 +31,7 @@ class Texture:
         bare_axis: unit vector (3,) to the middle of the bare cap.
         directions: unit vectors (N, 3) from the carrier's centre to the grains'.
         diameters: of the grains (N,), m.
+        adhesion: factors of the grains' pull-off forces (N,), 1 without a spread.
     """
 
     carrier_diameter: float
@@ -38,6 +39,7 @@ class Texture:
     bare_axis: NDArray[np.float64]
     directions: NDArray[np.float64]
     diameters: NDArray[np.float64]
+    adhesion: NDArray[np.float64]
 
     @property
     def centres(self) -> NDArray[np.float64]:
@@ -51,7 +53,7 @@ class Texture:
 
 
 #: in a texture file
-BYTES_A_GRAIN = 100
+BYTES_A_GRAIN = 120
 
 DISTRIBUTIONS = ("lognormal", "rrsb")
 
@@ -84,7 +86,7 @@ class Distribution:
 
 
 def make_texture(impact: Impact, path: str | Path, distribution: Distribution | None = None) -> None:
-    """Make the texture of an impact (its coverage, bare cap, diameters and seed) and write it to a file.
+    """Make the texture of an impact (its coverage, bare cap, diameters, spread and seed) and write it to a file.
 
     The grains are placed by ``fix dust/detach``, so that an impact with the same parameters has the same ones.
 
@@ -126,7 +128,8 @@ def _placement(impact: Impact, sizes: str, grains: Path) -> list[str]:
         "create_atoms 1 single 0 0 0",
         f"set atom 1 diameter {impact.carrier_diameter!r}",
         f"fix dust all dust/detach texture monolayer {impact.grain_diameter!r} coverage {impact.coverage!r} "
-        f"seed {impact.seed} bare {impact.bare!r}{sizes} write {lammps_file(grains, 'TMPDIR')}",
+        f"seed {impact.seed} bare {impact.bare!r} spread {impact.spread!r}{sizes} "
+        f"write {lammps_file(grains, 'TMPDIR')}",
     ]
 
 
@@ -149,9 +152,10 @@ def read_texture(path: str | Path) -> Texture:
         core.dust_texture_bare(texture, half_angle, axis.ctypes.data_as(_NUMBERS))
         table = np.empty((core.dust_texture_grains(texture), 4))
         core.dust_texture_table(texture, table.ctypes.data_as(_NUMBERS))
-        return Texture(
-            core.dust_texture_carrier_diameter(texture), half_angle.value, axis, table[:, :3].copy(), table[:, 3].copy()
-        )
+        adhesion = np.empty(len(table))
+        core.dust_texture_adhesion(texture, adhesion.ctypes.data_as(_NUMBERS))
+        carrier_diameter = core.dust_texture_carrier_diameter(texture)
+        return Texture(carrier_diameter, half_angle.value, axis, table[:, :3].copy(), table[:, 3].copy(), adhesion)
     finally:
         core.dust_texture_free(texture)
 
@@ -175,6 +179,7 @@ def load_core() -> CDLL:
             ("bare", None, (c_void_p, _NUMBERS, _NUMBERS)),
             ("grains", c_longlong, (c_void_p,)),
             ("table", None, (c_void_p, _NUMBERS)),
+            ("adhesion", None, (c_void_p, _NUMBERS)),
             ("free", None, (c_void_p,)),
         ):
             function = getattr(core, f"dust_texture_{name}")
