@@ -107,6 +107,7 @@ std::vector<Meets> DeckChecks::what_atoms_are() const
 void DeckChecks::look_at_contacts()
 {
   const DeckContacts deck(lmp, what_atoms_are(), [this](const Fix *fix) { return fixes.acts_on_carriers(fix); });
+  if (!deck.wrong.empty()) error->all(FLERR, deck.wrong);
   contacts = deck.all;
   unread = fixes.unread_contacts();
   for (const std::string &style : deck.other_styles) unread.push_back("pair_style " + style);

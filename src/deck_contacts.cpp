@@ -8,7 +8,6 @@
 #include "surface_contacts.h"
 
 #include "atom.h"
-#include "error.h"
 #include "fix_wall_gran.h"
 #include "force.h"
 #include "gran_sub_mod_damping.h"
@@ -145,17 +144,16 @@ DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<Meets> &types,
 void DeckContacts::look_at_surface(const Fix *fix, const std::function<bool(const Fix *)> &acts)
 {
   const SurfaceContacts surface(fix);
-  if (surface.models.empty()) return;
+  if (!fix || surface.models.empty()) return;
   if (surface.models.size() > 1)
-    error->all(FLERR, "Fix {} (surface/global) has {} models, whose contact histories LAMMPS mixes up: use a fix each",
-               fix->id, surface.models.size());
+    wrong =
+        fmt::format("Fix {} (surface/global) has {} models, whose contact histories LAMMPS mixes up: use a fix each",
+                    fix->id, surface.models.size());
   constexpr int MOVES_WRONG = 20260704;
   if (surface.moves && lmp->num_ver <= MOVES_WRONG)
-    error->all(
-        FLERR,
-        "Fix {} (surface/global) is moved by fix_modify, which LAMMPS 4 Jul 2026 does wrong: use fix surface/local "
-        "with pair_style surf/granular, and fix move",
-        fix->id);
+    wrong = fmt::format("Fix {} (surface/global) is moved by fix_modify, which LAMMPS 4 Jul 2026 does wrong: use fix "
+                        "surface/local with pair_style surf/granular, and fix move",
+                        fix->id);
   if (acts(fix)) all.emplace_back(std::string("fix ") + fix->id, surface.models[0], false, true);
 }
 

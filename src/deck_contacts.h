@@ -45,6 +45,7 @@ class DeckContacts : protected Pointers {
   std::vector<CarrierContact> all;
   // pair styles that push carriers but are no granular models; those of them that act beyond contact
   std::vector<std::string> other_styles, far_styles;
+  std::string wrong;    // what no deck may ask of LAMMPS, or empty
 
  private:
   void look_at_surface(const class Fix *, const std::function<bool(const class Fix *)> &acts);

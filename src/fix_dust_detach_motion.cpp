@@ -21,7 +21,7 @@ void FixDustDetach::note_contacts()
   const int nlocal = atom->nlocal;
   const double *const *f = atom->f;
   touched.resize(nlocal);
-  for (int i = 0; i < nlocal; i++) touched[i] = f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0;
+  for (int i = 0; i < nlocal; i++) touched[i] = f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0 ? 1 : 0;
   if (!settings.rotation) return;
   for (int i = 0; i < nlocal; i++)
     for (int d = 0; d < 3; d++) carriers.angle[i][d] += update->dt * atom->omega[i][d];
