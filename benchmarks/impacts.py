@@ -400,7 +400,7 @@ def figures(data: dict[str, list[Result]]) -> None:
     with_curves(smooth, lambda row: row.angle == 90, "figure4")
     with_curves(smooth, lambda row: row.restitution == 0.7, "figure5")
     with_curves(damped, lambda row: row.wall_friction == 0.3, "friction")
-    scatter(smooth)
+    scatter([*damped, *data[OTHERS]])
     ringing([row for row in plain if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7])
 
 
