@@ -182,10 +182,12 @@ class Impulse {
       return leaves(site, slide, PHASES.back(), slide.hold_at_end, release);
     }
     if (!leaves(site, slide, PHASES.back(), slide.hold_at_end, release)) return false;
-    // F_n has only grown: from when on it could leave
+    // F_n has only grown, to what the velocity makes it: from when on it could leave
     Release earlier = release;
-    for (size_t k = PHASES.size() - 1; located && k-- > 0 && leaves(site, slide, PHASES[k], site.hold, earlier);)
-      release = earlier;
+    for (size_t k = PHASES.size() - 1; located && k-- > 0; release = earlier) {
+      const double share = max_spin2 > 0.0 ? 1.0 : PHASES[k].velocity;
+      if (share * share * most2 <= site.hold * site.shell || !leaves(site, slide, PHASES[k], site.hold, earlier)) break;
+    }
     return true;
   }
   bool leaves(const GrainTable::Site &site, const Slide &slide, const Phase &phase, double hold, Release &release) const
