@@ -131,6 +131,7 @@ def test_each_parameter_reaches_lammps():
         "carrier_diameter": 1.2e-3,
         "hamaker": 2e-19,
         "z0": 0.5e-9,
+        "spread": 1.5,
         "friction": 0.1,
         "wall_friction": 0.3,
         "timestep": 2e-9,
@@ -218,7 +219,7 @@ def test_a_resolved_impact_that_detaches_nothing_settles():
 
 
 def test_parameters_of_a_resolved_run_reach_lammps(resolved_impact, resolved_result):
-    for change in ({"grain_damping": 0.1}, {"friction": 0.1}, {"seed": 2}, {"hamaker": 2e-19}):
+    for change in ({"grain_damping": 0.1}, {"friction": 0.1}, {"seed": 2}, {"hamaker": 2e-19}, {"spread": 2.0}):
         result = run(replace(resolved_impact, **change))
         # all of these move the carrier a little through its grains
         assert result.peak_acceleration != resolved_result.peak_acceleration, change
