@@ -53,7 +53,7 @@ def examine(speed: float) -> tuple[dict[str, float], NDArray, NDArray, NDArray]:
     with tempfile.TemporaryDirectory() as folder:
         dump, events = Path(folder) / "frames", Path(folder) / "events"
         resolved = run(Impact(method="resolved", speed=speed), frames=dump)
-        run(Impact(speed=speed), events=events)
+        run(Impact(speed=speed, tangential="estimate"), events=events)
         number = resolved.grains
         predicted = read_fates(events, number) > 0
         first, *others = read_frames(dump, list(frame_sizes(dump)))

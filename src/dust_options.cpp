@@ -14,7 +14,6 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
 #include "math_const.h"
 #include "update.h"
 
@@ -257,8 +256,6 @@ void DustOptions::complete()
   }
   if (orientation_seed && !atom->tag_enable)
     error->all(FLERR, "{} orientation random needs atom IDs: atom_modify id yes", command);
-  // a carrier that meets the wall with any side has no use for a side without grains
-  if (orientation_seed && !bare_given) bare.half_angle = 0.0;
 
   const auto absent = [&](double value, const char *key) {
     if (value == UNSET && !reference_units())
@@ -320,6 +317,20 @@ int DustOptions::file_for(double radius) const
   return static_cast<int>(nearest - files.begin());
 }
 
+/* ----------------------------------------------------------------------
+   as given, or as wide as these grains need it; a carrier that meets the wall with any side has no use for a side
+   without grains
+------------------------------------------------------------------------- */
+
+Dust::BareCap DustOptions::bare_cap(double radius) const
+{
+  Dust::BareCap cap = bare;
+  if (bare_given) return cap;
+  const double largest = 0.5 * (distributed ? sizes.largest() : diameter);
+  cap.half_angle = orientation_seed ? 0.0 : Dust::bare_half_angle(radius, largest);
+  return cap;
+}
+
 /* ---------------------------------------------------------------------- */
 
 Dust::Texture DustOptions::texture(double radius) const
@@ -328,9 +339,10 @@ Dust::Texture DustOptions::texture(double radius) const
   if (from_file()) {
     made = files[file_for(radius)].texture;
   } else {
+    const Dust::BareCap cap = bare_cap(radius);
     on_one_rank("texture", [&]() {
-      made = distributed ? Dust::place_monolayer(radius, sizes, coverage, bare, seed)
-                         : Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
+      made = distributed ? Dust::place_monolayer(radius, sizes, coverage, cap, seed)
+                         : Dust::place_monolayer(radius, 0.5 * diameter, coverage, cap, seed);
       Dust::spread_adhesion(made, spread, seed);
     });
     share(made);

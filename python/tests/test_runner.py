@@ -131,6 +131,7 @@ def test_each_parameter_reaches_lammps():
         "carrier_diameter": 1.2e-3,
         "hamaker": 2e-19,
         "z0": 0.5e-9,
+        "spread": 1.5,
         "friction": 0.1,
         "wall_friction": 0.3,
         "timestep": 2e-9,
@@ -166,9 +167,11 @@ def test_grains_that_ring_leave(tangential):
     assert ringing.dispersion_ratio == pytest.approx(0.9458, abs=0.012)
 
 
-def test_grain_damping_is_nothing_to_the_estimate():
-    fast = Impact(speed=12.0, tangential="estimate")
-    assert run(fast).dispersion_ratio == run(replace(fast, grain_damping=0.06)).dispersion_ratio
+@pytest.mark.parametrize("law", ["estimate", "frictionless", "off"])
+def test_grain_damping_is_refused_where_no_law_knows_it(law):
+    with pytest.raises(InvalidInput, match=f"^--grain-damping: 0.06 does nothing with --tangential {law}"):
+        Impact(speed=12.0, restitution=0.9, tangential=law, grain_damping=0.06)
+    Impact(speed=12.0, restitution=0.9, tangential=law, grain_damping=0.06, method="resolved")
 
 
 def test_half_the_surface_can_be_covered():
@@ -216,7 +219,7 @@ def test_a_resolved_impact_that_detaches_nothing_settles():
 
 
 def test_parameters_of_a_resolved_run_reach_lammps(resolved_impact, resolved_result):
-    for change in ({"grain_damping": 0.1}, {"friction": 0.1}, {"seed": 2}, {"hamaker": 2e-19}):
+    for change in ({"grain_damping": 0.1}, {"friction": 0.1}, {"seed": 2}, {"hamaker": 2e-19}, {"spread": 2.0}):
         result = run(replace(resolved_impact, **change))
         # all of these move the carrier a little through its grains
         assert result.peak_acceleration != resolved_result.peak_acceleration, change

@@ -99,6 +99,45 @@ TEST(CreateDust, GrainsSitAtTheEquilibriumOverlapAndMoveWithTheirCarrier)
     }
 }
 
+TEST(CreateDust, CarriersOfSeveralSizesHaveATextureEach)
+{
+  // on their own radius, as a create_dust of their own places it; IDs by carrier
+  const std::vector<double> sizes = {1.0e-3, 1.5e-3, 1.2e-3, 1.5e-3};
+  const auto made = [&](const std::vector<std::string> &commands) {
+    Deck deck;
+    deck("units si\natom_style sphere\natom_modify map array\nboundary p p f\n"
+         "region box block -0.008 0.004 -0.002 0.002 -0.002 0.004\ncreate_box 2 box");
+    for (size_t k = 0; k < sizes.size(); k++) {
+      deck.carrier(-0.0065 + 0.003 * k, 0.0, 0.001, 0.1, 0.0, -0.2 * k);
+      deck(line("set atom %.0f diameter %.17g density 7700", k + 1.0, sizes[k]));
+    }
+    deck("group carriers type 1");
+    for (const std::string &command : commands) deck(command);
+    std::vector<std::array<double, 4>> grains;
+    const auto *radius = static_cast<double *>(lammps_extract_atom(deck.lmp, "radius"));
+    auto **x = static_cast<double **>(lammps_extract_atom(deck.lmp, "x"));
+    const int n = static_cast<int>(lammps_extract_setting(deck.lmp, "nlocal"));
+    for (int i = 0; i < n; i++)
+      if (radius[i] < 0.1e-3) grains.push_back({x[i][0], x[i][1], x[i][2], radius[i]});
+    return grains;
+  };
+  const std::string dust = " type 2 texture monolayer 20e-6 coverage 0.02 seed 3";
+  auto together = made({"create_dust carriers" + dust + " write dust_sizes_*.txt"});
+  EXPECT_EQ(together.size(), 200u + 2 * 450u + 288u);
+  const char *names[] = {"dust_sizes_0.001.txt", "dust_sizes_0.0012.txt", "dust_sizes_0.0015.txt"};
+  size_t written = 0;
+  for (const char *name : names) {
+    written += Dust::read_texture_file(name).grains.size();
+    std::remove(name);
+  }
+  EXPECT_EQ(written, 200u + 288u + 450u);
+  auto apart = made({"group a id 1", "group b id 2 4", "group c id 3", "create_dust a" + dust, "create_dust b" + dust,
+                     "create_dust c" + dust});
+  std::sort(together.begin(), together.end());
+  std::sort(apart.begin(), apart.end());
+  EXPECT_EQ(together, apart);
+}
+
 // five types, classes of factors from 1/8 to 8, of a factor 8^(2/5) each
 TEST(CreateDust, ASpreadOfAdhesionGoesIntoTypesAndOverlaps)
 {
