@@ -23,8 +23,6 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grains is not in the carrier's yet
-
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
@@ -171,22 +169,22 @@ void FixDustDetach::adopt()
     if (!DustOptions::same_size(atom->radius[i], coat.radius))
       error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
                  atom->tag[i], 2.0 * atom->radius[i], 2.0 * coat.radius);
-    carriers.state[i] = FREE_FLIGHT;
+    carriers.state[i] = NOT_WEIGHED;
     std::copy(coat.table->all_attached().begin(), coat.table->all_attached().end(), carriers.attached[i]);
     array_atom[i][DetachAtom::ATTACHED] = coat.table->grains();
     mine.initial += coat.table->grains();
     if (carriers.orientation) carriers.orientation[i] = settings.orientation(atom->tag[i]);
-    carriers.began[i] = NOT_WEIGHED;
   }
 }
 
 // not yet where the fix is made: a restart file may bring carriers that have lost some already
 void FixDustDetach::weigh()
 {
-  if (!settings.lose_mass || !coat) return;
+  if (!coat) return;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (carriers.state[i] == NO_CARRIER || carriers.began[i] != NOT_WEIGHED) continue;
-    carriers.began[i] = 0.0;
+    if (carriers.state[i] != NOT_WEIGHED) continue;
+    carriers.state[i] = FREE_FLIGHT;
+    if (!settings.lose_mass) continue;
     atom->rmass[i] += coat.table->grains() * coat.table->mean_mass();
     shedding.mass_changed();
   }
@@ -301,7 +299,8 @@ void FixDustDetach::collide(int i)
 
 DeckChecks::Course FixDustDetach::course_of(const Dust::Collision &collision) const
 {
-  return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold()};
+  return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold(),
+          coat.table->max_shell() - coat.radius};
 }
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)

@@ -609,8 +609,8 @@ TEST(FixDustDetachShedding, IDsExistOnce)
   EXPECT_NE(error.find("id max"), std::string::npos) << error;
 }
 
-// grains fly on while their carrier's collision lasts: those that come to a wall meanwhile would be in it or behind it as
-// atoms, and be lost. The wall acts on them only if it is one for group all.
+// grains fly on while their carrier's collision lasts: those that come to a wall meanwhile would be in it or behind it
+// as atoms, and be lost. The wall acts on them only if it is one for group all.
 TEST(FixDustDetachShedding, GrainsThatComeToAWallFindNoRoom)
 {
   const std::string walls[] = {"zplane 0 NULL", "region up"};
