@@ -10,19 +10,16 @@ should have done is computed from what was written before.
 from __future__ import annotations
 
 import math
-import os
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", Path(__file__).parents[2] / "build"))
-AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+from ranks import run_ranks
 
 BARE = math.pi / 6.0 * 1.5e-3**3 * 7700.0
 GRAIN = math.pi / 6.0 * 100e-6**3 * 2700.0
@@ -312,12 +309,7 @@ class Drill:
     def run(self, script: list[str], ranks: int) -> str:
         deck = self.folder / f"in.act{self.act}"
         deck.write_text("\n".join([*script[:1], f"# {ranks} ranks", *script[1:]]) + "\n")
-        # ranks that wait let others work: a machine may have fewer cores, or much to do
-        command = ["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-np", str(ranks)]
-        command += [str(BUILD / "bin/lmp-dust"), "-log", "none"]
-        command += ["-in", deck.name]
-        environment = os.environ | AS_ROOT
-        done = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=600)
+        done = run_ranks(self.folder, deck.name, ranks)
         if done.returncode != 0:
             raise Open(f"{deck}: " + done.stdout[-1500:] + done.stderr[-500:])
         return done.stdout

@@ -1,24 +1,15 @@
 """The same grains leave on 1, 2 and 4 ranks, with newton on and off, and after a restart on another number of ranks."""
 
-import os
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
-
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", Path(__file__).parents[2] / "build"))
+from ranks import run_ranks
 
 
 def mpirun(folder: Path, deck: str, ranks: int, **variables: str) -> str:
     """What lmp-dust prints of a deck beside this file, on so many ranks."""
-    # ranks that wait let others work: a machine may have fewer cores, or much to do
-    command = ["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-np", str(ranks)]
-    command += [str(BUILD / "bin/lmp-dust"), "-log", "none"]
-    command += ["-in", str(Path(__file__).with_name(deck))]
-    for name, value in variables.items():
-        command += ["-var", name, value]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+    done = run_ranks(folder, Path(__file__).with_name(deck), ranks, **variables)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     return done.stdout
 

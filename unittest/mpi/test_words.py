@@ -1,20 +1,16 @@
 """One rank makes, reads and writes textures for all: what it meets stops all of them with one line."""
 
-import os
-import subprocess
 from pathlib import Path
 
 import pytest
+from ranks import run_ranks
 
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", Path(__file__).parents[2] / "build"))
 MONOLAYER = "monolayer 20e-6 coverage 0.2 seed 1"
 
 
 def said(folder: Path, ranks: int, texture: str) -> tuple[int, str]:
     """Exit status and output of the deck."""
-    command = ["mpirun", "--oversubscribe", "-np", str(ranks), str(BUILD / "bin/lmp-dust"), "-log", "none"]
-    command += ["-in", str(Path(__file__).with_name("in.words")), "-var", "texture", texture]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300, check=False)
+    done = run_ranks(folder, Path(__file__).with_name("in.words"), ranks, texture=texture)
     return done.returncode, done.stdout
 
 
