@@ -4,7 +4,8 @@
     . build/environment; build/venv/bin/python benchmarks/bodies.py compare    a minute
 
 `run` writes the resolved runs to bodies/resolved.csv, a row for each carrier, and bodies/machine.json. `compare` runs
-the functions with both tangential methods on the same inputs, and writes bodies/functions.csv and bodies/comparison.md.
+the functions with three laws of tangential lift-off on the same inputs, and writes bodies/functions.csv,
+bodies/comparison.md and bodies/agreement.csv, which doc/validation.rst shows.
 """
 
 import argparse
@@ -26,7 +27,7 @@ HERE = ROOT / "benchmarks/bodies"
 BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
 INPUTS = ROOT / "lammps-inputs"
 RESOLVED, FUNCTIONS = HERE / "resolved.csv", HERE / "functions.csv"
-METHODS = ("estimate", "integrate")
+METHODS = ("impulse", "estimate", "integrate")
 LIMIT = 0.03  # largest difference
 CASE = ("kind", "speed", "angle", "spin", "offset", "wall_friction", "coverage", "grain_contacts")
 ROW = (
@@ -153,7 +154,10 @@ def functions() -> list[dict[str, str]]:
     for case in cases():
         kind = KINDS[case[0]]
         for method in METHODS:
-            new = run_deck(kind.functions, variables_of(case, kind.variables) | {"tangential": method}, case)
+            law = {"tangential": method}
+            if method == "integrate":  # the resolved decks' default
+                law["grain_damping"] = "1"
+            new = run_deck(kind.functions, variables_of(case, kind.variables) | law, case)
             rows += [{**row, "tangential": method} for row in new]
     # what the functions do not tell; their times would change the file each time
     left_out = ("grains", "last_neck", "wall_seconds")
@@ -231,6 +235,18 @@ def comparison(resolved: list[dict[str, str]], computed: list[dict[str, str]]) -
     yield from table(["cases", "number", "mean", "largest", f"above {LIMIT}"], summary)
 
 
+def agreements(text: str) -> Iterator[str]:
+    """The last table of the comparison with a column for each law, for the documentation."""
+    kinds: dict[str, list[str]] = {}
+    for line in text[text.index("## Differences") :].splitlines():
+        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        if ":" in name:
+            kind = name.rpartition(":")[0]
+            kinds.setdefault(kind, [f'"{kind}"', cells[0]]).extend(cells[1:3])
+    yield ",".join(["cases", "number", *(cell for law in METHODS for cell in (f"{law}: mean", "largest"))])
+    yield from (",".join(cells) for cells in kinds.values())
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("run", "compare"))
@@ -239,6 +255,7 @@ def main() -> None:
         return
     text = "\n".join(comparison(read(RESOLVED), functions()))
     (HERE / "comparison.md").write_text(text)
+    (HERE / "agreement.csv").write_text("\n".join(agreements(text)) + "\n")
     print(text, end="")
 
 

@@ -5,9 +5,10 @@
     build/venv/bin/python benchmarks/impacts.py run --functions --work DIR [NAME ...]   half a minute
     build/venv/bin/python benchmarks/impacts.py compare                            seconds, from the tables in impacts/
 
-`run` copies the table of each NAME.toml (all by default) to impacts/NAME.csv, with machine and versions in
-impacts/machine.json; with --functions the rows of the resolved runs stay as they are, as does machine.json. `compare`
-writes impacts/comparison.md and the figures beside it.
+`run` writes the table of each NAME.toml (all by default), the functions by each law of tangential lift-off, to
+impacts/NAME.csv, with machine and versions in impacts/machine.json; with --functions the rows of the resolved runs stay
+as they are, as does machine.json. `compare` writes impacts/comparison.md, the figures beside it, and agreement.csv,
+which doc/validation.rst shows.
 """
 
 import argparse
@@ -16,9 +17,7 @@ import json
 import os
 import platform
 import re
-import shutil
 import subprocess
-import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
@@ -27,6 +26,7 @@ from pathlib import Path
 
 import dustdetach
 import matplotlib.pyplot as plt
+from dustdetach import read_cases, sweep
 from dustdetach.figures import draw
 from dustdetach.impact import PARAMETERS
 from dustdetach.result import Result, read_csv, write_csv
@@ -36,11 +36,9 @@ HERE = Path(__file__).resolve().parent / "impacts"
 # where a table's cases have their partners: a case and its variant differ in this parameter alone
 VARIANTS = {"seeds": "seed", "timestep": "timestep"}
 DAMPINGS = (1.0, 0.2, 0.06)
-# these lists run to the deck's own limit; the others, to save hours, to this one (s): the ratio is final before 10 us
-MAIN = ("straight", "oblique")
-EARLIER = "20e-6"
-# this list has tangential = "integrate", which resolved runs do not know: theirs are those of the other lists
-FUNCTIONS_ALONE = "integrate"
+LIMIT = "20e-6"  # of resolved runs (s), where the deck has 50 us: the ratio is final before 10 us
+OTHERS = "others"  # the list that is not of the reference case
+LAWS = ("impulse", "estimate", "integrate")
 
 Pair = tuple[Result, Result]
 
@@ -63,39 +61,26 @@ def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
     }
     for name in names:
         print(name, flush=True)
-        method = "functions" if functions or name == FUNCTIONS_ALONE else "both"
-        command = [
-            "sweep",
-            str(HERE / f"{name}.toml"),
-            "--method",
-            method,
-            "--out",
-            str(work / name),
-            "--jobs",
-            str(jobs),
-        ]
-        environment = os.environ | {"DUSTDETACH_INPUTS": str(decks(work / "decks", name))}
-        subprocess.run([sys.executable, "-m", "dustdetach", *command], env=environment, check=True)
+        cases = read_cases(HERE / f"{name}.toml")
+        os.environ["DUSTDETACH_INPUTS"] = str(decks(work / "decks"))
+        rows = sweep([replace(case, tangential=law) for case in cases for law in LAWS], work / name, jobs=jobs)
         kept = HERE / f"{name}.csv"
         if functions:
-            rows = read_csv(work / name / "results.csv")
             rows += [row for row in read_csv(kept) if row.method == "resolved"]
-            write_csv(kept, sorted(rows, key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())))
-            continue
-        shutil.copy(work / name / "results.csv", kept)
-        (HERE / "machine.json").write_text(json.dumps(machine, indent=1) + "\n")
+        else:
+            rows += sweep([replace(case, method="resolved") for case in cases], work / name, jobs=jobs)
+            (HERE / "machine.json").write_text(json.dumps(machine, indent=1) + "\n")
+        write_csv(kept, sorted(rows, key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())))
 
 
-def decks(folder: Path, name: str) -> Path:
-    """The decks as they are for the main lists, with an earlier end for the others."""
+def decks(folder: Path) -> Path:
+    """The decks with an earlier end."""
     inputs = HERE.parents[1] / "lammps-inputs"
-    if name in MAIN:
-        return inputs
     folder.mkdir(parents=True, exist_ok=True)
     for deck in inputs.glob("in.*"):
         text = re.sub(
             r"^(variable limit +index )50e-6",
-            rf"\g<1>{EARLIER}",
+            rf"\g<1>{LIMIT}",
             deck.read_text(),
             flags=re.MULTILINE,
         )
@@ -110,37 +95,29 @@ def tables() -> dict[str, list[Result]]:
 
 
 def as_now(row: Result) -> Result:
-    """Resolved runs follow the spin, but tables from before the functions did say False."""
-    return replace(row, rotation=True) if row.method == "resolved" else row
+    """Resolved runs follow the spin and know no law of lift-off, whatever their row says."""
+    return replace(row, rotation=True, tangential=LAWS[0]) if row.method == "resolved" else row
 
 
 def key(row: Result, *without: str) -> tuple:
-    return tuple(getattr(row, name) for name in PARAMETERS if name not in ("method", *without))
+    return tuple(getattr(row, name) for name in PARAMETERS if name not in ("method", "tangential", *without))
 
 
-def pairs(rows: Iterable[Result]) -> list[Pair]:
-    """Functions and resolved run of the same impact."""
+def pairs(rows: Iterable[Result], law: str) -> list[Pair]:
+    """Functions with a law of lift-off and resolved run of the same impact."""
     rows = list(rows)
-    functions = {key(row): row for row in rows if row.method == "functions"}
+    functions = {key(row): row for row in rows if row.method == "functions" and row.tangential == law}
     return [(functions[key(row)], row) for row in rows if row.method == "resolved" and key(row) in functions]
 
 
-def integrated(rows: Iterable[Result]) -> list[Pair]:
-    """Functions with `tangential integrate` and the resolved run of the same impact."""
-    rows = list(rows)
-    resolved = {key(row, "tangential"): row for row in rows if row.method == "resolved"}
-    followed = [row for row in rows if row.method == "functions" and row.tangential == "integrate"]
-    return [(row, resolved[key(row, "tangential")]) for row in followed if key(row, "tangential") in resolved]
-
-
-def estimated(data: dict[str, list[Result]]) -> list[Result]:
-    """All cases but those of `tangential integrate`."""
-    return unique(row for part in data.values() for row in part if row.tangential == "estimate")
+def reference_rows(data: dict[str, list[Result]]) -> list[Result]:
+    """Of the reference case, of all lists."""
+    return unique(row for name, part in data.items() if name != OTHERS for row in part)
 
 
 def unique(rows: Iterable[Result]) -> list[Result]:
     """Cases that stand in several tables count once."""
-    return list({(row.method, key(row)): row for row in rows}.values())
+    return list({(row.method, row.tangential, key(row)): row for row in rows}.values())
 
 
 # --- the text --------------------------------------------------------------------------------------------
@@ -166,101 +143,79 @@ def agreement(label: str, compared: list[Pair]) -> list[object]:
     return [*row, f"{worst.speed:g} m/s, {worst.angle:g}°, e {worst.restitution:g}"]
 
 
+def groups(data: dict[str, list[Result]], law: str) -> Iterator[tuple[str, list[Pair]]]:
+    """Kinds of impacts and their pairs."""
+    rows = reference_rows(data)
+    for damping in DAMPINGS:
+        damped = pairs((row for row in rows if row.grain_damping == damping and row.wall_friction == 0.05), law)
+        straight = [pair for pair in damped if pair[0].angle == 90]
+        listed = [pair for pair in straight if pair[0].seed == 1 and pair[0].timestep == 1e-9]
+        yield f"straight, zeta {damping:g}", listed
+        if len(listed) < len(straight):
+            yield "... with other seeds and half time steps", straight
+        yield f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]
+    rough = pairs((row for row in rows if row.wall_friction == 0.3), law)
+    yield "wall friction 0.3, zeta 1", rough
+    yield "other carriers, grains, walls", pairs(data[OTHERS], law)
+
+
+def agreements(data: dict[str, list[Result]]) -> Iterator[list[str]]:
+    """Mean and largest difference by each law, for the documentation."""
+    names = ("ratio", "south", "north")
+    yield ["impacts", "cases", "law", *(cell for name in names for cell in (f"{name}: mean", "largest"))]
+    for kinds in zip(*(groups(data, law) for law in LAWS), strict=True):
+        for law, (kind, compared) in zip(LAWS, kinds, strict=True):
+            cells = [f"{cell:.4f}" for cell in agreement(kind, compared)[2:-1] if isinstance(cell, float)]
+            yield [*((kind, str(len(compared))) if law == LAWS[0] else ("", "")), law, *cells]
+
+
 def comparison(data: dict[str, list[Result]]) -> Iterator[str]:
-    rows = estimated(data)
+    rows = reference_rows(data)
     plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
     smooth = [row for row in plain if row.wall_friction == 0.05]
 
     yield "# Detachment functions against grain-resolved runs"
     yield ""
-    resolved = [row for row in rows if row.method == "resolved"]
+    resolved = [row for row in [*rows, *data[OTHERS]] if row.method == "resolved"]
     ends = {end: sum(row.end == end for row in resolved) for end in sorted({row.end for row in resolved})}
     version = resolved[0].lammps_version
-    yield f"{len(resolved)} resolved impacts of {resolved[0].grains} grains, LAMMPS {version}; ended by "
-    yield (", ".join(f"*{end}*: {count}" for end, count in ends.items()) + ". Written by `impacts.py compare`.")
+    ended = ", ".join(f"*{end}*: {count}" for end, count in ends.items())
+    yield f"{len(resolved)} resolved impacts, LAMMPS {version}, in the reference case of {rows[0].grains} grains."
+    yield f"They stop at {float(LIMIT) * 1e6:g} us at the latest; ended by {ended}."
+    yield "Written by `impacts.py compare`."
     yield ""
 
     yield "## Agreement"
     yield ""
-    yield (
-        "Differences of the fraction of the initial dust mass, tangential lift-off by `estimate`, "
-        "same inputs on both sides."
-    )
+    yield "Differences of the fraction of the initial dust mass, with the same inputs on both sides and nothing"
+    yield "adjusted, for each law of tangential lift-off. *zeta*: damping ratio of the grains' contacts, which"
+    yield "`estimate` does not know."
     yield ""
-    head = [
-        "impacts",
-        "cases",
-        "ratio: mean",
-        "largest",
-        "south: mean",
-        "largest",
-        "north: mean",
-        "largest",
-        "largest at",
-    ]
-    lines = []
-    for damping in DAMPINGS:
-        damped = pairs(row for row in rows if row.grain_damping == damping and row.wall_friction == 0.05)
-        straight = [pair for pair in damped if pair[0].angle == 90]
-        oblique = [pair for pair in damped if pair[0].angle != 90]
-        listed = [pair for pair in straight if pair[0].seed == 1 and pair[0].timestep == 1e-9]
-        lines.append(agreement(f"straight, zeta {damping:g}", listed))
-        if len(listed) < len(straight):
-            lines.append(agreement("... with other seeds and half time steps", straight))
-        if oblique:
-            lines.append(agreement(f"oblique, zeta {damping:g}", oblique))
-    both = {key(pair[1], "grain_damping") for pair in pairs(row for row in smooth if row.grain_damping == DAMPINGS[1])}
-    same = [pair for pair in pairs(smooth) if pair[0].grain_damping == 1 and key(pair[0], "grain_damping") in both]
-    lines.append(agreement("zeta 1, cases of the weaker dampings alone", same))
-    rough = pairs(row for row in plain if row.wall_friction == 0.3)
-    lines.append(
-        agreement(
-            "oblique, zeta 1, wall friction 0.3",
-            [pair for pair in rough if pair[0].angle != 90],
-        )
-    )
-    yield from table(head, lines)
-    yield (
-        "The same with `tangential integrate`, which follows each grain's own slide and roll, "
-        "and its contact of that zeta:"
-    )
-    yield ""
-    followed = integrated(row for part in data.values() for row in part)
-    lines = []
-    for damping in DAMPINGS:
-        damped = [pair for pair in followed if pair[0].grain_damping == damping and pair[0].wall_friction == 0.05]
-        straight = [pair for pair in damped if pair[0].angle == 90]
-        listed = [pair for pair in straight if pair[0].seed == 1]
-        lines.append(agreement(f"straight, zeta {damping:g}", listed))
-        if len(listed) < len(straight):
-            lines.append(agreement("... with other seeds", straight))
-        lines.append(agreement(f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]))
-    lines.append(
-        agreement(
-            "zeta 1, cases of the weaker dampings alone",
-            [pair for pair in followed if pair[0].grain_damping == 1 and key(pair[1], "grain_damping") in both],
-        )
-    )
-    oblique = [pair for pair in followed if pair[0].angle != 90 and pair[0].wall_friction == 0.3]
-    lines.append(agreement("oblique, zeta 1, wall friction 0.3", oblique))
-    yield from table(head, lines)
-
+    head = ["impacts", "cases", "ratio: mean", "largest", "south: mean", "largest", "north: mean", "largest"]
+    for law in LAWS:
+        yield f"`tangential {law}`:"
+        yield ""
+        yield from table([*head, "largest at"], [agreement(*group) for group in groups(data, law)])
     yield "## What the paper says"
     yield ""
     yield from paper([row for row in smooth if row.method == "resolved" and row.grain_damping == 1])
     yield "## Straight impacts, zeta 1"
     yield ""
-    yield from cases([pair for pair in pairs(smooth) if pair[0].angle == 90 and pair[0].grain_damping == 1])
+    yield from cases([row for row in smooth if row.angle == 90 and row.grain_damping == 1])
     yield "## Oblique impacts, zeta 1"
     yield ""
-    yield from cases([pair for pair in pairs(smooth) if pair[0].angle != 90 and pair[0].grain_damping == 1])
+    yield from cases([row for row in smooth if row.angle != 90 and row.grain_damping == 1])
     yield "## Grain contacts that ring"
     yield ""
-    yield from dampings(smooth, followed)
+    yield from dampings(smooth)
     yield "## Rough wall, friction 0.3"
     yield ""
+    rough = [row for row in plain if row.wall_friction == 0.3]
     yield from cases(rough)
     yield from best_angle(rough)
+    yield "## Other carriers, grains, adhesion, friction and restitution"
+    yield ""
+    yield from others(data[OTHERS])
     yield "## Other influences"
     yield ""
     yield (
@@ -334,81 +289,63 @@ def paper(resolved: list[Result]) -> Iterator[str]:
     yield from table(["quantity", "wanted", "found", "holds"], lines)
 
 
-def cases(compared: list[Pair]) -> Iterator[str]:
-    head = [
-        "e",
-        "angle",
-        "v (m/s)",
-        "functions",
-        "resolved",
-        "south f",
-        "south r",
-        "north f",
-        "north r",
-        "end",
-        "s",
-    ]
-    compared = sorted(compared, key=lambda pair: (pair[0].restitution, -pair[0].angle, pair[0].speed))
-    yield from table(
-        head,
-        (
-            [
-                f"{f.restitution:g}",
-                f"{f.angle:g}",
-                f"{f.speed:g}",
-                f.dispersion_ratio,
-                r.dispersion_ratio,
-                *[f.south, r.south, f.north, r.north, r.end, f"{r.wall_seconds:.0f}"],
-            ]
-            for f, r in compared
-        ),
-    )
+def cases(rows: list[Result]) -> Iterator[str]:
+    """A line for each impact: all laws, then the first one's halves."""
+    compared = {law: {key(r): f for f, r in pairs(rows, law)} for law in LAWS}
+    lines = []
+    for f, r in sorted(pairs(rows, LAWS[0]), key=lambda pair: (pair[0].restitution, -pair[0].angle, pair[0].speed)):
+        ratios = [compared[law][key(r)].dispersion_ratio for law in LAWS]
+        halves = [f.south, r.south, f.north, r.north]
+        which = (f"{f.restitution:g}", f"{f.angle:g}", f"{f.speed:g}")
+        lines.append([*which, *ratios, r.dispersion_ratio, *halves, r.end, f"{r.wall_seconds:.0f}"])
+    names = [f"{half} {who}" for half in ("south", "north") for who in (LAWS[0], "resolved")]
+    yield from table(["e", "angle", "v (m/s)", *LAWS, "resolved", *names, "end", "s"], lines)
 
 
-def dampings(smooth: list[Result], followed: list[Pair]) -> Iterator[str]:
-    by_case = defaultdict(dict)
-    for row in smooth:
-        if row.method == "resolved":
-            by_case[key(row, "grain_damping")][row.grain_damping] = row
-    functions = {key(row, "grain_damping"): row for row in smooth if row.method == "functions"}
-    integrate = {key(r): f for f, r in followed}
-    lines = [
-        [
-            f"{found[1.0].restitution:g}",
-            f"{found[1.0].angle:g}",
-            f"{found[1.0].speed:g}",
-            functions[case].dispersion_ratio,
-        ]
-        + [row.dispersion_ratio for damping in DAMPINGS for row in (integrate[key(found[damping])], found[damping])]
-        for case, found in sorted(by_case.items(), key=lambda item: (item[0][2], -item[0][1], item[0][0]))
-        if all(damping in found for damping in DAMPINGS)
-    ]
-    yield from table(
-        [
-            "e",
-            "angle",
-            "v (m/s)",
-            "estimate",
-            *(cell for damping in DAMPINGS for cell in (f"zeta {damping:g}: integrate", "resolved")),
-        ],
-        lines,
-    )
+def others(rows: list[Result]) -> Iterator[str]:
+    compared = {law: {key(r): f for f, r in pairs(rows, law)} for law in LAWS}
+    lines = []
+    for r in (row for row in rows if row.method == "resolved"):
+        of_law = [compared[law][key(r)] for law in LAWS]
+        sizes = [f"{r.carrier_diameter * 1e3:g}", f"{r.grain_diameter * 1e6:g}", f"{r.hamaker:g}", f"{r.friction:g}"]
+        impact = [f"{r.wall_friction:g}", f"{r.restitution:g}", f"{r.angle:g}", f"{r.speed:g}"]
+        halves = [of_law[0].south, r.south, of_law[0].north, r.north]
+        lines.append([*sizes, *impact, *(f.dispersion_ratio for f in of_law), r.dispersion_ratio, *halves])
+    names = [f"{half} {who}" for half in ("south", "north") for who in (LAWS[0], "resolved")]
+    head = ["carrier (mm)", "grains (um)", "A (J)", "mu_f", "wall mu", "e", "angle", "v (m/s)"]
+    yield from table([*head, *LAWS, "resolved", *names], lines)
 
 
-def best_angle(rough: list[Pair]) -> Iterator[str]:
+def dampings(smooth: list[Result]) -> Iterator[str]:
+    laws = [law for law in LAWS if law != "estimate"]
+    followed = {key(r): f for f, r in pairs(smooth, laws[1])}
+    by_case: dict[tuple, dict[float, tuple[Result, ...]]] = defaultdict(dict)
+    for f, r in pairs(smooth, laws[0]):
+        by_case[key(r, "grain_damping")][r.grain_damping] = (f, followed[key(r)], r)
+    complete = [found for found in by_case.values() if all(damping in found for damping in DAMPINGS)]
+    complete.sort(key=lambda found: (found[1.0][0].restitution, -found[1.0][0].angle, found[1.0][0].speed))
+    lines = []
+    for found in complete:
+        f = found[1.0][0]
+        ratios = [row.dispersion_ratio for damping in DAMPINGS for row in found[damping]]
+        lines.append([f"{f.restitution:g}", f"{f.angle:g}", f"{f.speed:g}", *ratios])
+    head = [cell for damping in DAMPINGS for cell in (*(f"zeta {damping:g}: {law}" for law in laws), "resolved")]
+    yield from table(["e", "angle", "v (m/s)", *head], lines)
+
+
+def best_angle(rough: list[Result]) -> Iterator[str]:
     yield "Angle of largest release:"
     yield ""
+    tellers = [*(("functions", law) for law in LAWS), ("resolved", LAWS[0])]
     lines = []
-    for speed in sorted({f.speed for f, _ in rough}):
-        at = [pair for pair in rough if pair[0].speed == speed]
-        best = [max(at, key=lambda pair, k=k: pair[k].dispersion_ratio)[k] for k in (0, 1)]
-        lines.append(
-            [
-                f"{speed:g}",
-                *(f"{row.angle:g}° ({row.dispersion_ratio:.4f})" for row in best),
-            ]
-        )
-    yield from table(["v (m/s)", "functions", "resolved"], lines)
+    for speed in sorted({row.speed for row in rough}):
+        line = [f"{speed:g}"]
+        for teller in tellers:
+            at = [row for row in rough if row.speed == speed and (row.method, row.tangential) == teller]
+            best = max(at, key=lambda row: row.dispersion_ratio)
+            line.append(f"{best.angle:g}° ({best.dispersion_ratio:.4f})")
+        lines.append(line)
+    yield from table(["v (m/s)", *LAWS, "resolved"], lines)
 
 
 def variants(resolved: list[Result], plain: list[Result], parameter: str) -> Iterator[str]:
@@ -441,35 +378,31 @@ def variants(resolved: list[Result], plain: list[Result], parameter: str) -> Ite
 
 # --- the figures -----------------------------------------------------------------------------------------
 def figures(data: dict[str, list[Result]]) -> None:
-    rows = estimated(data)
+    rows = reference_rows(data)
     plain = [row for row in rows if row.seed == 1 and row.timestep == 1e-9]
     damped = [row for row in plain if row.grain_damping == 1]
     smooth = [row for row in damped if row.wall_friction == 0.05]
 
     def with_curves(chosen: list[Result], belongs: Callable[[Result], bool], name: str) -> None:
-        for path in draw([row for row in chosen if belongs(row)], HERE / name):
+        # what is followed would lie on the impulse law's lines
+        shown = [row for row in chosen if belongs(row) and row.tangential != "integrate"]
+        for path in draw(shown, HERE / name):
             if path.suffix == ".svg":
                 path.unlink()
 
     with_curves(smooth, lambda row: row.angle == 90, "figure4")
     with_curves(smooth, lambda row: row.restitution == 0.7, "figure5")
     with_curves(damped, lambda row: row.wall_friction == 0.3, "friction")
-    scatter(pairs(smooth))
-    integrate = [row for part in data.values() for row in part if row.tangential == "integrate" and row.seed == 1]
-    ringing(
-        [row for row in plain + integrate if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7]
-    )
+    scatter(smooth)
+    ringing([row for row in plain if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7])
 
 
-def scatter(compared: list[Pair]) -> None:
+def scatter(rows: list[Result]) -> None:
     figure, axes = plt.subplots(figsize=(4.2, 4.0), layout="constrained")
     axes.plot([0, 1], [0, 1], color="0.7", linewidth=0.8)
-    for label, colour, chosen in (
-        ("straight", "#0072B2", [pair for pair in compared if pair[0].angle == 90]),
-        ("oblique", "#D55E00", [pair for pair in compared if pair[0].angle != 90]),
-    ):
-        x, y = zip(*((f.dispersion_ratio, r.dispersion_ratio) for f, r in chosen), strict=True)
-        axes.plot(x, y, "o", color=colour, markerfacecolor="white", label=label)
+    for law, colour, marker in (("estimate", "#D55E00", "s"), ("impulse", "#0072B2", "o")):
+        x, y = zip(*((f.dispersion_ratio, r.dispersion_ratio) for f, r in pairs(rows, law)), strict=True)
+        axes.plot(x, y, marker, color=colour, markerfacecolor="white", markersize=4.5, label=law)
     axes.set(
         xlabel="Dispersion ratio, detachment functions",
         ylabel="Dispersion ratio, dust-resolved",
@@ -494,8 +427,8 @@ def ringing(rows: list[Result]) -> None:
     axes.plot(*estimate, color="0.6", linestyle=":", label="estimate")
     for damping, colour, marker in zip(DAMPINGS, ("#0072B2", "#D55E00", "#009E73"), "os^", strict=True):
         label = f"$\\zeta$ = {damping:g}"
-        followed = curve(tangential="integrate", grain_damping=damping)
-        axes.plot(*followed, color=colour, label=f"integrate, {label}")
+        law = curve(method="functions", tangential="impulse", grain_damping=damping)
+        axes.plot(*law, color=colour, label=f"impulse, {label}")
         resolved = curve(method="resolved", grain_damping=damping)
         axes.plot(*resolved, marker, color=colour, markerfacecolor="white", label=f"resolved, {label}")
     axes.set(
@@ -531,6 +464,8 @@ def main() -> None:
     else:
         data = tables()
         (HERE / "comparison.md").write_text("\n".join(comparison(data)))
+        with (HERE / "agreement.csv").open("w", newline="") as stream:
+            csv.writer(stream, lineterminator="\n").writerows(agreements(data))
         figures(data)
 
 

@@ -21,7 +21,7 @@ variable grain_diameter   index 20e-6     # m
 variable hamaker          index 14.633e-20    # grain against carrier, J
 variable z0               index 0.4e-9    # m
 variable friction         index 0.3       # grain against carrier
-variable tangential       index estimate
+variable tangential       index impulse
 variable timestep         index 1e-9      # s
 variable limit            index 200000    # steps
 variable rotation         index yes       # no: as if the carrier did not turn
@@ -61,9 +61,11 @@ fix             move all nve/sphere
 fix             wall all wall/gran granular hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 &
                 ${wall_friction} damping coeff_restitution/limited zplane 0.0 NULL
 
+variable        ringing string ""
+if "$(is_defined(variable,grain_damping))" then "variable ringing string 'damping ${grain_damping}'"
 fix             dust all dust/detach texture monolayer ${grain_diameter} coverage ${coverage} seed ${seed} &
                 bare ${bare} density 2700 hamaker ${hamaker} ${z0} elastic 75e9 0.3 210e9 0.3 friction ${friction} &
-                tangential ${tangential} rotation ${rotation} every 100
+                tangential ${tangential} rotation ${rotation} every 100 ${ringing}
 
 # one line a grain: step, carrier, grain, mode (1 normal, 2 tangential), diameter, position, velocity
 if "$(is_defined(variable,events))" then "dump events all local 100 ${events} f_dust[1] f_dust[2] f_dust[3] &

@@ -46,9 +46,10 @@ std::vector<Keyword> DetachSettings::keywords()
       {"tangential",
        [this](Keywords &words) {
          // in the order of their names
-         constexpr decltype(criteria.tangential) LAWS[] = {Dust::Criteria::ESTIMATE, Dust::Criteria::INTEGRATE,
-                                                           Dust::Criteria::FRICTIONLESS, Dust::Criteria::OFF};
-         criteria.tangential = LAWS[words.one_of({"estimate", "integrate", "frictionless", "off"})];
+         constexpr decltype(criteria.tangential) LAWS[] = {Dust::Criteria::IMPULSE, Dust::Criteria::ESTIMATE,
+                                                           Dust::Criteria::INTEGRATE, Dust::Criteria::FRICTIONLESS,
+                                                           Dust::Criteria::OFF};
+         criteria.tangential = LAWS[words.one_of({"impulse", "estimate", "integrate", "frictionless", "off"})];
        }},
       {"criteria", [this](Keywords &words) { criteria.ibrahim = words.one_of({"liftoff", "ibrahim"}) == 1; }},
       {"counts", [this](Keywords &words) { criteria.count = words.yes_or_no(); }},
@@ -82,8 +83,10 @@ void DetachSettings::check(int igroup)
   if (friction == UNSET) friction = 0.3;
   if (rotation && (!atom->omega_flag || !atom->torque_flag))
     error->all(FLERR, "{} rotation yes needs atoms with spin and torque, such as atom_style sphere", command);
-  if (damping != UNSET && criteria.tangential != Dust::Criteria::INTEGRATE)
-    error->all(FLERR, "{} damping needs tangential integrate: no other law follows how a grain's contact moves",
+  if (damping != UNSET && criteria.tangential != Dust::Criteria::IMPULSE &&
+      criteria.tangential != Dust::Criteria::INTEGRATE)
+    error->all(FLERR,
+               "{} damping needs tangential impulse or integrate: no other law knows how a grain's contact rings",
                command);
   if (!emit) return;
   if (weightless)

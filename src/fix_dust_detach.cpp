@@ -4,6 +4,7 @@
 
 #include "fix_dust_detach.h"
 
+#include "core/tangential_law.h"
 #include "dust_atoms.h"
 
 #include "atom.h"

@@ -87,10 +87,22 @@ def figures_folder(tmp_path_factory):
     return folder
 
 
+def by_law(folder, law):
+    """Rows of both sweeps with a law of tangential lift-off, by (speed, angle, restitution)."""
+    rows = read_csv(folder / "results.csv")
+    return {(row.speed, row.angle, row.restitution): row for row in rows if row.tangential == law}
+
+
+@pytest.fixture(scope="session", params=["impulse", "estimate"])
+def figures_table(request, figures_folder):
+    """Rows of both sweeps by (speed, angle, restitution), for each law of tangential lift-off."""
+    return by_law(figures_folder, request.param)
+
+
 @pytest.fixture(scope="session")
-def figures_table(figures_folder):
-    """Rows of both sweeps by (speed, angle, restitution)."""
-    return {(row.speed, row.angle, row.restitution): row for row in read_csv(figures_folder / "results.csv")}
+def impulse_table(figures_folder):
+    """The same with the default law alone."""
+    return by_law(figures_folder, "impulse")
 
 
 @pytest.fixture(scope="session")

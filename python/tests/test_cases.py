@@ -15,6 +15,7 @@ def test_the_figures_ask_for_what_the_paper_shows():
     assert {case.angle for case in straight} == {90}
     assert {case.restitution for case in straight} == {0.5, 0.7, 0.9}
     assert {case.restitution for case in oblique} == {0.7}
+    assert {case.tangential for case in (*straight, *oblique)} == {"impulse", "estimate"}
     assert {case.angle for case in oblique} == {15, 30, 45, 60, 75, 90}
     for cases in (straight, oblique):
         speeds = {case.speed for case in cases}
@@ -53,6 +54,14 @@ def test_the_ratio_falls_with_the_angle(figures_table, speed):
 def test_both_hemispheres_release_at_12_and_60_degrees(figures_table):
     assert figures_table[12, 60, 0.7].north >= 0.05
     assert figures_table[12, 60, 0.7].south >= 0.05
+
+
+def test_a_resolved_run_stands_for_all_laws():
+    cases = [Impact(speed=speed, tangential=law) for speed in (4, 8) for law in ("impulse", "estimate")]
+    both = with_methods(cases, "both")
+    assert [case.method for case in both] == ["functions"] * 4 + ["resolved"] * 2
+    assert both[:4] == cases
+    assert [case.speed for case in both[4:]] == [4, 8]
 
 
 def test_toml_makes_every_combination(tmp_path):

@@ -137,7 +137,7 @@ def test_a_resolved_impact(command, tmp_path):
         (("--seed", "1.5"), "--seed: invalid int value: '1.5'"),
         (
             ("--tangential", "guess"),
-            "--tangential: unknown choice 'guess'; allowed: estimate, integrate, frictionless, off",
+            "--tangential: unknown choice 'guess'; allowed: impulse, estimate, integrate, frictionless, off",
         ),
         (("--timestep", "1"), "--timestep: 1 is out of range"),
         (("--method", "magic"), "--method: unknown choice 'magic'; allowed: functions, resolved"),

@@ -10,6 +10,11 @@ from dustdetach.figures import COLOURS, draw, plot
 from dustdetach.result import write_csv
 
 
+def table(folder):
+    """The rows with the default law of tangential lift-off."""
+    return [row for row in read_csv(folder / "results.csv") if row.tangential == "impulse"]
+
+
 def test_both_figures_from_one_folder(figures_folder):
     names = [path.name for path in plot(figures_folder)]
     assert names == ["figure4.png", "figure4.svg", "figure5.png", "figure5.svg"]
@@ -19,14 +24,12 @@ def test_both_figures_from_one_folder(figures_folder):
 
 
 def test_a_sweep_of_angles_alone_makes_one_figure(figures_folder, tmp_path):
-    write_csv(
-        tmp_path / "results.csv", [row for row in read_csv(figures_folder / "results.csv") if row.restitution == 0.7]
-    )
+    write_csv(tmp_path / "results.csv", [row for row in table(figures_folder) if row.restitution == 0.7])
     assert [path.name for path in plot(tmp_path)] == ["figure5.png", "figure5.svg"]
 
 
 def test_the_picture_says_what_it_shows(figures_folder, tmp_path):
-    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    rows = [row for row in table(figures_folder) if row.angle == 90]
     resolved = [replace(row, method="resolved", normal=None, tangential_mode=None) for row in rows[:5]]
     with plt.rc_context({"svg.fonttype": "none"}):
         draw([*rows, *resolved], tmp_path / "both")
@@ -41,7 +44,7 @@ def resolved(row, **changes):
 
 @pytest.mark.filterwarnings("error")
 def test_resolved_rows_of_other_parameters_are_a_curve_of_their_own(figures_folder, tmp_path):
-    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    rows = [row for row in table(figures_folder) if row.angle == 90]
     others = [resolved(row, grain_damping=0.2) for row in rows if row.restitution == 0.7 and row.speed in (4, 8)]
     # a layout that does not fit is a warning, and so an error here
     with plt.rc_context({"svg.fonttype": "none"}):
@@ -53,7 +56,7 @@ def test_resolved_rows_of_other_parameters_are_a_curve_of_their_own(figures_fold
 
 @pytest.mark.filterwarnings("error")
 def test_resolved_rows_alone_are_open_markers_one_a_seed(figures_folder, tmp_path):
-    rows = [row for row in read_csv(figures_folder / "results.csv") if (row.angle, row.restitution) == (90, 0.7)]
+    rows = [row for row in table(figures_folder) if (row.angle, row.restitution) == (90, 0.7)]
     seeds = [resolved(row, seed=seed) for row in rows if row.speed in (4, 8) for seed in (1, 2, 3)]
     with plt.rc_context({"svg.fonttype": "none"}):
         draw(seeds, tmp_path / "seeds")
@@ -64,15 +67,44 @@ def test_resolved_rows_alone_are_open_markers_one_a_seed(figures_folder, tmp_pat
     assert text.count(f"fill: #ffffff; stroke: {COLOURS[0].lower()}") == 3 * 6 + 1
 
 
+@pytest.mark.filterwarnings("error")
+def test_laws_of_a_curve_share_its_colour(figures_folder, tmp_path):
+    rows = [row for row in table(figures_folder) if row.angle == 90]
+    rows = [replace(row, tangential=law) for row in rows for law in ("impulse", "estimate")]
+    points = [resolved(row) for row in rows if row.tangential == "impulse" and row.speed == 8]
+    with plt.rc_context({"svg.fonttype": "none"}):
+        draw([*rows, *points], tmp_path / "laws")
+    text = (tmp_path / "laws.svg").read_text()
+    for words in (">impulse<", ">estimate<", ">dust-resolved<"):
+        assert text.count(words) == 1
+    assert ">functions<" not in text
+    # a dashed line in each panel and colour, and the legend's
+    assert text.count("stroke-dasharray") >= 3 * 3 + 1
+    assert COLOURS[3].lower() not in text
+
+
 def test_the_same_table_makes_the_same_file(figures_folder, tmp_path):
-    rows = read_csv(figures_folder / "results.csv")
+    rows = table(figures_folder)
     draw(rows, tmp_path / "a")
     draw(rows, tmp_path / "b")
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
 
 
+def test_resolved_runs_of_another_sweep_are_drawn_as_well(figures_folder, tmp_path):
+    rows = table(figures_folder)
+    write_csv(tmp_path / "results.csv", [row for row in rows if row.angle == 90])
+    points = [resolved(row) for row in rows if row.angle == 90 and row.speed == 8]
+    write_csv(tmp_path / "resolved.csv", points)
+    with plt.rc_context({"svg.fonttype": "none"}):
+        assert [path.name for path in plot(tmp_path)] == ["figure4.png", "figure4.svg"]
+    assert (tmp_path / "figure4.svg").read_text().count(">dust-resolved<") == 1
+    (tmp_path / "resolved.csv").write_text("speed\n")
+    with pytest.raises(InvalidInput, match=r"resolved\.csv: "):
+        plot(tmp_path)
+
+
 def test_one_speed_makes_no_curve(figures_folder, tmp_path):
-    write_csv(tmp_path / "results.csv", [row for row in read_csv(figures_folder / "results.csv") if row.speed == 4])
+    write_csv(tmp_path / "results.csv", [row for row in table(figures_folder) if row.speed == 4])
     with pytest.raises(InvalidInput, match="at least two speeds are needed"):
         plot(tmp_path)
 
@@ -87,7 +119,7 @@ def test_one_speed_makes_no_curve(figures_folder, tmp_path):
     ],
 )
 def test_numbers_that_no_impact_has_are_named(figures_folder, tmp_path, change, words):
-    first, *others = read_csv(figures_folder / "results.csv")
+    first, *others = table(figures_folder)
     write_csv(tmp_path / "results.csv", [replace(first, **change), *others])
     with pytest.raises(InvalidInput) as refusal:
         plot(str(tmp_path))
@@ -103,7 +135,7 @@ def test_folders_without_a_table_are_named(tmp_path, folder):
 
 
 def test_a_figure_that_cannot_be_replaced_is_named(figures_folder, tmp_path):
-    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    rows = [row for row in table(figures_folder) if row.angle == 90]
     (tmp_path / "figure4.svg").mkdir()
     with pytest.raises(InvalidInput) as refusal:
         draw(rows, tmp_path / "figure4")
@@ -112,7 +144,7 @@ def test_a_figure_that_cannot_be_replaced_is_named(figures_folder, tmp_path):
 
 
 def test_a_full_disk_leaves_no_half_figure(figures_folder, tmp_path, largest_file):
-    rows = [row for row in read_csv(figures_folder / "results.csv") if row.angle == 90]
+    rows = [row for row in table(figures_folder) if row.angle == 90]
     with largest_file(1000), pytest.raises(MachineFault, match=r"figure4\.png: File too large"):
         draw(rows, tmp_path / "figure4")
     assert list(tmp_path.iterdir()) == []

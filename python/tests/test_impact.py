@@ -79,7 +79,7 @@ def test_mappings_that_are_none(values):
         ("seed", 0, "1 to 900000000"),
         ("seed", -5, "1 to 900000000"),
         ("seed", 1.5, "whole number"),
-        ("tangential", "guess", "estimate, integrate, frictionless, off"),
+        ("tangential", "guess", "impulse, estimate, integrate, frictionless, off"),
         ("method", "both", "functions, resolved"),
         ("rotation", 1, "not true or false"),
         ("timestep", 0, "above 0 and at most 1e-07 s"),

@@ -123,8 +123,8 @@ def test_each_method_has_its_own_deck_in_the_name(monkeypatch, tmp_path):
     assert Build().name(Impact(speed=4.0, method="resolved")) != resolved
 
 
-def test_sweeps_of_the_same_folder_share_cases_and_the_table(figures_folder, figures_table):
-    assert len(rows(figures_folder)) == len(figures_table) == len(completed(figures_folder))
+def test_sweeps_of_the_same_folder_share_cases_and_the_table(figures_folder, impulse_table):
+    assert len(rows(figures_folder)) == 2 * len(impulse_table) == len(completed(figures_folder))
 
 
 def test_results_of_another_build_are_not_taken(tmp_path, monkeypatch):
@@ -153,15 +153,15 @@ def test_if_every_case_fails_nothing_is_written(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_processes_give_what_one_gives(tmp_path, figures_table):
+def test_processes_give_what_one_gives(tmp_path, impulse_table):
     for result in sweep(CASES, tmp_path, jobs=2):
-        expected = figures_table.get((result.speed, result.angle, result.restitution))
+        expected = impulse_table.get((result.speed, result.angle, result.restitution))
         assert expected is not None
         assert result.dispersion_ratio == expected.dispersion_ratio
         assert result.contact_time == expected.contact_time
 
 
-def test_ranks_give_what_one_gives(tmp_path, command, figures_table):
+def test_ranks_give_what_one_gives(tmp_path, command, impulse_table):
     pytest.importorskip("mpi4py")
     mpirun = shutil.which("mpirun")
     if mpirun is None:
@@ -174,7 +174,7 @@ def test_ranks_give_what_one_gives(tmp_path, command, figures_table):
     table = rows(tmp_path / "out")
     assert len(table) == 8
     for row in table:
-        expected = figures_table[float(row["speed"]), float(row["angle"]), 0.7]
+        expected = impulse_table[float(row["speed"]), float(row["angle"]), 0.7]
         assert float(row["dispersion_ratio"]) == expected.dispersion_ratio
 
 

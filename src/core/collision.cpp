@@ -203,9 +203,11 @@ void Collision::let_go(const GrainTable &table, const Release &release, uint64_t
   if (!work.locate) return;
   course.frame.to_space(release.direction, work.detached.back().direction);
   course.frame.to_space(release.velocity, work.detached.back().velocity);
+  course.frame.to_space(release.carrier_velocity, work.detached.back().carrier_velocity);
+  course.frame.to_space(release.carrier_place, work.detached.back().carrier_place);
 }
 
-// where the carrier was when grains left; the impulses are along the axes of the frame by now
+// where the carrier was when grains left, by the record; the impulses are along the axes of the frame by now
 void Collision::locate_in_past(std::vector<Detachment> &detached, size_t first) const
 {
   const Retrospect carrier(*impulses);

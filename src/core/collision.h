@@ -127,7 +127,7 @@ class alignas(64) Collision {
   {
     constexpr size_t SIZES = 16;    // of all vectors, and other single numbers
     size_t size = SIZES + numbers_of<Course>();
-    if (impulses) size += numbers_of<ImpulseRecord::Span>() * ImpulseRecord::MAX_SPANS;
+    if (impulses) size += numbers_of<ImpulseRecord::Span>() * impulses->spans().size();
     if (strong)
       size += numbers_of<Strong::State>() + strong->start.size() + numbers_of<Motion>() * strong->history.kept().size();
     return static_cast<int>(size);

@@ -15,7 +15,7 @@ struct Criteria {
   bool count = true;       //!< grains that meet the sliding and rolling criteria
   bool ibrahim = false;    //!< sliding and rolling detach too
   //! the law of tangential lift-off, a file each (tangential_law.h)
-  enum Tangential { OFF, FRICTIONLESS, ESTIMATE, INTEGRATE } tangential = ESTIMATE;
+  enum Tangential { OFF, FRICTIONLESS, ESTIMATE, IMPULSE, INTEGRATE } tangential = IMPULSE;
 };
 
 }    // namespace Dust

@@ -6,6 +6,7 @@
 
 #include "geometry.h"
 #include "jkr.h"
+#include "normal_motion.h"
 #include "patch_bits.h"
 #include "sticking_criteria.h"
 #include "tangential_law.h"
@@ -50,8 +51,8 @@ void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
 /* ---------------------------------------------------------------------- */
 
 GrainTable::GrainTable(const Texture &texture, const Material &material, const Criteria &criteria) :
-    matter(material), asked(criteria), law(tangential_law(criteria.tangential)), rp(texture.carrier_radius),
-    sites(texture.grains.size())
+    matter(material), asked(criteria), ring(material.damping >= 0.0 ? Dust::overshoot(material.damping) : 0.0),
+    law(tangential_law(criteria.tangential, ring > 0.0)), rp(texture.carrier_radius), sites(texture.grains.size())
 {
   const int n = grains();
   all.assign((n + PATCH - 1) / PATCH, ~uint64_t(0));

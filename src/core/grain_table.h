@@ -22,8 +22,8 @@ struct Material {
   double gamma;             //!< surface energy, pull-off force 3 pi gamma R_12
   double modulus;           //!< combined modulus E* of grain and carrier
   double friction;          //!< mu_f
-  double rolling = 0.15;    //!< theta_crit; only INTEGRATE uses it
-  //! damping ratio of the contact; INTEGRATE then lets grains ring (normal_motion.h), below 0 not
+  double rolling = 0.15;    //!< theta_crit; IMPULSE and INTEGRATE use it
+  //! damping ratio of the contact; these two then let grains ring (normal_motion.h), below 0 not
   double damping = -1.0;
 };
 
@@ -78,6 +78,8 @@ class GrainTable {
   const Criteria &criteria() const { return asked; }
   /*! The law of tangential lift-off that the criteria name, or null */
   const TangentialLaw *tangential() const { return law; }
+  /*! Overshoot of contacts that ring (normal_motion.h), 0 if they do not */
+  double overshoot() const { return ring; }
 
   /*! Whether inertia can make a grain slide (or leave) that moves with its carrier: if none can, it is at rest */
   bool may_move(const Motion &motion) const;
@@ -96,6 +98,7 @@ class GrainTable {
  private:
   Material matter;
   Criteria asked;
+  double ring;
   const TangentialLaw *law;
   double rp;
   double mass;

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double STIFFNESS = 1.8 / ROOT_6;    // k0 delta_c/F_c: 12/(20/3 6^(1/3)), the slope of the branch at y = 1
 constexpr double STEP = 0.3;                  // times the frequency: a period in 21 steps
-constexpr double PERIODS = 3.0;               // after the collision
 constexpr double MAX_STEPS = 1.0e4;           // at once: beyond any load that a material stands
 
 double overlap_of(double y) { return ROOT_6 * (2.0 * y * y * y - 4.0 / 3.0) * y; }
@@ -104,9 +103,42 @@ void NormalMotion::advance(const double *load, double dt, int steps)
 
 /* ---------------------------------------------------------------------- */
 
-void NormalMotion::ring_out()
+double NormalMotion::longest_period() const
 {
   double max_time = 0.0;
   for (int i = 0; i < count; i++) max_time = std::max(max_time, here[i] / std::max(rate[i], 1e-300));
-  if (max_time > 0.0) advance(G, PERIODS * 2.0 * PI / std::sqrt(STIFFNESS) * max_time);
+  return 2.0 * PI / std::sqrt(STIFFNESS) * max_time;
+}
+
+/* ----------------------------------------------------------------------
+   grains side by side whose loads come to 1/2 at slopes one step apart, within a tenth and then a hundredth of it
+------------------------------------------------------------------------- */
+
+double Dust::overshoot(double zeta)
+{
+  constexpr int LANES = NormalMotion::LANES, PIECES = 100;
+  constexpr double LOAD = 0.5, MAX_SLOPE = 32.0, RISE = 60.0;    // time in which a load comes, units as in the header
+  double low = 0.0, high = MAX_SLOPE;
+  while (high - low > 1.0e-3 * high) {
+    const double step = (high - low) / LANES;
+    NormalMotion motion(zeta);
+    double load[LANES], slope[LANES];
+    for (int i = 0; i < LANES; i++) {
+      slope[i] = low + (i + 1) * step;
+      motion.add(1.0, 1.0, load[i] = LOAD - 0.75 * RISE * slope[i]);
+    }
+    // from rest, and evenly from half of the time on, so that it does not ring before
+    for (int k = 1; k <= PIECES; k++) {
+      const double t = static_cast<double>(k) / PIECES, part = t < 0.5 ? t * t : t - 0.25;
+      for (int i = 0; i < LANES; i++) load[i] = LOAD + (part - 0.75) * RISE * slope[i];
+      motion.advance(load, RISE / PIECES);
+    }
+    motion.advance(RISE);
+    int stay = 0;
+    while (stay < LANES && motion.attached(stay)) stay++;
+    if (stay == LANES) return 0.0;
+    high = low + (stay + 1) * step;
+    low += stay * step;
+  }
+  return (1.0 - LOAD) / high;
 }

@@ -34,7 +34,7 @@ struct CarrierStep {
 
 // one grain: its time step and half of it, which are 0 if it has left, as `here` is; then as in SurfaceMotion
 struct Lane {
-  double h, half, here;
+  double h, half, here, holds;
   double friction, hold, inv_hold, stiffness;
   double shell, inv_shell, radius, inv_radius;
 };
@@ -83,7 +83,7 @@ inline double to_end(State &s, const Lane &g, const CarrierStep &step)
   const Vector f = friction_on(s, g, step, after - before, t, stiffness, gn);
 
   const Vector middle = w + g.half * (t + f);
-  const double lift = dot(middle, middle) * g.inv_shell - an, stays = lift > g.hold ? 0.0 : g.here;
+  const double lift = dot(middle, middle) * g.inv_shell - an, stays = lift > g.hold ? g.holds * g.here : g.here;
   const double rest = stays * 0.5 * step.dt;
   s.v = middle + rest * (t + f) - (stays * g.shell) * after;
   s.p = s.p + (g.radius * before - 2.5 * g.h * (f + stiffness * s.psi) - (stays * g.radius) * after);
@@ -94,7 +94,8 @@ inline double to_end(State &s, const Lane &g, const CarrierStep &step)
 
 }    // namespace
 
-SurfaceMotion::SurfaceMotion(double mu_f, double theta_crit) : friction(mu_f), rolling2(theta_crit * theta_crit)
+SurfaceMotion::SurfaceMotion(double mu_f, double theta_crit, bool _holds) :
+    friction(mu_f), rolling2(theta_crit * theta_crit), holds(_holds)
 {
   clear();
 }
@@ -145,8 +146,8 @@ void SurfaceMotion::advance(const double *a, const double *spin, double dt)
   const Vector o = {omega[0], omega[1], omega[2]};
   const CarrierStep step = {dt, 1.0 / dt, {a[0], a[1], a[2]}, o, Vector{spin[0], spin[1], spin[2]} - o};
   for (int i = 0; i < LANES; i++) {
-    const Lane grain = {dt * here[i], 0.5 * (dt * here[i]), here[i],   friction,     hold[i], inv_hold[i], stiffness[i],
-                        shell[i],     inv_shell[i],         radius[i], inv_radius[i]};
+    const Lane grain = {dt * here[i], 0.5 * (dt * here[i]), here[i],  holds,        friction,  hold[i],
+                        inv_hold[i],  stiffness[i],         shell[i], inv_shell[i], radius[i], inv_radius[i]};
     State state = {{n[0][i], n[1][i], n[2][i]},
                    {v[0][i], v[1][i], v[2][i]},
                    {p[0][i], p[1][i], p[2][i]},
@@ -163,19 +164,25 @@ void SurfaceMotion::advance(const double *a, const double *spin, double dt)
 
 /* ---------------------------------------------------------------------- */
 
+void SurfaceMotion::let_go(int grain)
+{
+  double w[3], rolling_w[3];
+  for (int d = 0; d < 3; d++) {
+    w[d] = velocity(grain, d);
+    rolling_w[d] = rolling_velocity(grain, d);
+  }
+  here[grain] = 0.0;
+  for (int d = 0; d < 3; d++) {
+    v[d][grain] = w[d];
+    p[d][grain] = rolling_w[d];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
 void SurfaceMotion::release()
 {
-  for (int i = 0; i < count; i++) {
-    double w[3], rolling_w[3];
-    for (int d = 0; d < 3; d++) {
-      w[d] = velocity(i, d);
-      rolling_w[d] = rolling_velocity(i, d);
-    }
-    if (!(dot(w, w) * inv_shell[i] > hold[i])) continue;
-    here[i] = 0.0;
-    for (int d = 0; d < 3; d++) {
-      v[d][i] = w[d];
-      p[d][i] = rolling_w[d];
-    }
-  }
+  constexpr double NONE[3] = {0.0, 0.0, 0.0};
+  for (int i = 0; i < count; i++)
+    if (attached(i) && outward_force(i, NONE) > hold[i]) let_go(i);
 }

@@ -41,7 +41,8 @@ class SurfaceMotion {
  public:
   static constexpr int LANES = 32;    // side by side, for the compiler's vectors
 
-  SurfaceMotion(double mu_f, double theta_crit);
+  /*! \param holds  whether grains stay where F_n > F_c: then others say when they leave */
+  SurfaceMotion(double mu_f, double theta_crit, bool holds = false);
 
   /*! Takes away all grains */
   void clear();
@@ -61,6 +62,9 @@ class SurfaceMotion {
 
   /*! The end of the contact: only its motion lifts a grain */
   void release();
+
+  /*! A grain leaves as it moves now */
+  void let_go(int grain);
 
   bool attached(int grain) const { return here[grain] > 0.0; }
 
@@ -83,7 +87,7 @@ class SurfaceMotion {
   double rolling_angle(int grain, int d) const { return psi[d][grain]; }    //!< xi/R_12
 
  private:
-  double friction, rolling2;
+  double friction, rolling2, holds;    // 1 if grains stay where F_n > F_c, else 0
   int count;
   // by grain
   double here[LANES];                                                         // 1 as long as it is attached, then 0

@@ -89,7 +89,7 @@ class Follower {
  public:
   Follower(const GrainTable &grains, const PastCollision &collision, std::vector<Release> &leaving) :
       table(grains), past(collision), released(leaving), steps(substeps(collision)), rings(::rings(grains)),
-      motion(grains.material().friction, grains.material().rolling), ringing(grains.material().damping)
+      motion(grains.material().friction, grains.material().rolling, ::rings(grains)), ringing(grains.material().damping)
   {
   }
 
@@ -112,21 +112,17 @@ class Follower {
   // those that are still to be followed
   void run()
   {
-    double load[SurfaceMotion::LANES];
     for (const Substep &step : steps) {
-      motion.advance(step.acceleration, step.spin_after, step.dt);
-      if (rings) {
-        for (int k = 0; k < motion.grains(); k++)
-          load[k] = motion.outward_force(k, step.acceleration_after) / table.site(releases[k].bit).hold;
-        ringing.advance(load, step.dt);
-      }
+      advance(step.acceleration, step.acceleration_after, step.spin_after, step.dt);
       note_releases(step.before_end);
     }
-    motion.release();
-    ringing.ring_out();
-    note_releases(0.0);
+    note_motion();    // those that leave later do so with what they have at the end
+    if (rings)
+      ring_out();
+    else
+      motion.release();
     for (int k = 0; k < motion.grains(); k++)
-      if (!attached[k]) released.push_back(releases[k]);
+      if (!motion.attached(k)) released.push_back(releases[k]);
     motion.clear();
     ringing.clear();
   }
@@ -141,19 +137,58 @@ class Follower {
   NormalMotion ringing;
   Release releases[SurfaceMotion::LANES];
   bool attached[SurfaceMotion::LANES];
+  double load[SurfaceMotion::LANES];    // F_n/F_c, if they ring
+
+  // a grain that rings leaves where its contact breaks, not before
+  void advance(const double *acceleration, const double *after, const double *spin, double dt)
+  {
+    motion.advance(acceleration, spin, dt);
+    if (!rings) return;
+    for (int k = 0; k < motion.grains(); k++)
+      load[k] = motion.outward_force(k, after) / table.site(releases[k].bit).hold;
+    ringing.advance(load, dt);
+    for (int k = 0; k < motion.grains(); k++)
+      if (motion.attached(k) && !ringing.attached(k)) motion.let_go(k);
+  }
+
+  // after the collision: some periods, and more as long as a contact is drawn out by more than it can hold but damped
+  void ring_out()
+  {
+    constexpr int PARTS = 4, PERIODS = 3, MAX_PERIODS = 31;
+    constexpr double NONE[3] = {0.0, 0.0, 0.0};
+    const double period = ringing.longest_period();
+    for (int k = 0; k < PARTS * MAX_PERIODS && (k < PARTS * PERIODS || any_opens()); k++)
+      advance(NONE, NONE, past.spin_after, period / PARTS);
+  }
+  bool any_opens() const
+  {
+    for (int k = 0; k < motion.grains(); k++)
+      if (motion.attached(k) && load[k] > 1.0) return true;
+    return false;
+  }
   static_assert(SurfaceMotion::LANES == NormalMotion::LANES, "one grain each");
 
   // those that have just left, as they do
   void note_releases(double before_end)
   {
     for (int k = 0; k < motion.grains(); k++) {
-      if (!attached[k] || (motion.attached(k) && !(rings && !ringing.attached(k)))) continue;
+      if (!attached[k] || motion.attached(k)) continue;
       attached[k] = false;
       releases[k].before_end = before_end;
-      for (int d = 0; d < 3; d++) {
-        releases[k].direction[d] = motion.direction(k, d);
-        releases[k].velocity[d] = motion.velocity(k, d);
-      }
+      note_motion(k);
+    }
+  }
+  // all others
+  void note_motion()
+  {
+    for (int k = 0; k < motion.grains(); k++)
+      if (attached[k]) note_motion(k);
+  }
+  void note_motion(int k)
+  {
+    for (int d = 0; d < 3; d++) {
+      releases[k].direction[d] = motion.direction(k, d);
+      releases[k].velocity[d] = motion.velocity(k, d);
     }
   }
 };

@@ -32,6 +32,8 @@ struct Release {
   double direction[3];    //!< n, along the same axes
   double velocity[3];     //!< relative to the carrier's centre
   double before_end;      //!< when it left: so long before the end of the collision
+  //! how the carrier moved until then, u and r of retrospect.h, if no record of the collision tells
+  double carrier_velocity[3] = {0.0, 0.0, 0.0}, carrier_place[3] = {0.0, 0.0, 0.0};
 };
 
 /*! A law of tangential lift-off: which grains leave, asked once at the end of a collision.
@@ -49,8 +51,9 @@ struct TangentialLaw {
                    std::vector<Release> &);
 };
 
-/*! The law of this name; null for OFF */
-const TangentialLaw *tangential_law(Criteria::Tangential name);
+/*! The law of this name; null for OFF
+ *  \param rings  whether the grains' contacts are to ring, in a law that can tell */
+const TangentialLaw *tangential_law(Criteria::Tangential name, bool rings);
 
 }    // namespace Dust
 

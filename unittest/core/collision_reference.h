@@ -36,8 +36,12 @@ struct History {
 };
 
 struct Outcome {
-  std::map<int, std::pair<int, int>> left;     // grain: step, mode
-  std::map<int, std::pair<Vec, Vec>> where;    // and its direction and velocity, in space
+  struct Place {    // in space; so long before the end of the collision
+    Vec direction, velocity;
+    double before_end;
+  };
+  std::map<int, std::pair<int, int>> left;    // grain: step, mode
+  std::map<int, Place> where;
   int north = 0, sliding = 0, rolling = 0;
   int steps = 0;    // until the end
 };
@@ -136,20 +140,51 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
         mode = ROLLING;
       if (mode != NMODES) {
         out.left[i] = {k, mode};
-        out.where[i] = {n, cross(spin[k], r)};
+        out.where[i] = {n, cross(spin[k], r), 0.0};
         attached = false;
       }
     }
-    if (attached && !(rests && weak) && dot(n0, dv) < 0.0 && criteria.tangential != Criteria::OFF) {
+    const bool impulse = criteria.tangential == Criteria::IMPULSE;
+    if (attached && !(rests && weak) && (impulse || dot(n0, dv) < 0.0) && criteria.tangential != Criteria::OFF) {
       const Vec r = r_pd * n0, all = dv + cross(h.spin, r), vt0 = all - dot(all, n0) * n0;
       const Vec surface = cross(spin1, r), s0 = vt0 - surface;
       const double friction = criteria.tangential == Criteria::ESTIMATE ? 0.5 * m.friction * largest : 0.0;
       const double work = friction * 0.5 * size(s0) * contact_time;
       const double s = std::sqrt(std::max(0.0, dot(s0, s0) - 2.0 * work / mass));
-      const Vec vt = (size(s0) > 0.0 ? s / size(s0) : 0.0) * s0 + surface;
-      if (mass * dot(vt, vt) / r_pd > fc) {
+      Vec vt = (size(s0) > 0.0 ? s / size(s0) : 0.0) * s0 + surface;
+      if (impulse) {
+        // friction's momentum, at most what makes a solid sphere roll that spins and slides at first
+        const Vec slip = vt0 - cross(g.radius * h.spin + texture.carrier_radius * spin1, n0);
+        const double pulled = mass * dot(dv, n0), held = fc * contact_time;
+        const double pushed = m.friction * (2.0 * held - pulled);
+        const double inertia = 0.4 * mass * g.radius * g.radius, lever = g.radius * g.radius / inertia;
+        const double to_roll = size(slip) / (1.0 / mass + lever);
+        // while it rolls, the moment of its pivots and the force of friction on it in a ratio that keeps it rolling
+        const double pivots =
+            2.0 * (held + std::sqrt(held * std::max(0.0, held - pulled))) * r12 * m.rolling / g.radius;
+        const double on = std::min(pivots, mass * size(slip)) * lever / (1.0 / mass + lever);
+        const double taken = std::max(0.0, std::min(pushed, to_roll + on)) / mass;
+        vt = size(slip) > 0.0 ? vt0 - taken / size(slip) * slip : vt0;
+        // half a sine in twelve parts; it has no grain to lift in the first of them that stays where it is
+        const Vec w0 = cross(h.spin, r);
+        const double most = mass * std::min(0.5 * M_PI * size(dv) / contact_time, peak);
+        for (int k = 3; k <= 12 && attached && size(dv) > 0.0; k++) {
+          const double tau = k * M_PI / 12.0, omega = M_PI / contact_time;
+          const Vec w = w0 + std::pow(std::sin(0.5 * tau), 2) * (vt - w0);
+          const Vec moved = tau / omega * w0 + 0.5 / omega * (tau - std::sin(tau)) * (vt - w0);
+          const Vec now = n0 + 1.0 / r_pd * moved, lift = most * std::sin(tau) / size(dv) * dv;
+          if (dot(lift, now) + mass * dot(w, w) / r_pd <= fc) continue;
+          out.left[i] = {out.steps, TANGENTIAL};
+          // on the sphere, with its speed
+          const Vec there = 1.0 / size(now) * now, along = w - dot(w, there) * there;
+          out.where[i] = {there, (size(along) > 0.0 ? size(w) / size(along) : 0.0) * along,
+                          contact_time * (1.0 - k / 12.0)};
+          attached = false;
+        }
+      }
+      if (attached && mass * dot(vt, vt) / r_pd > fc) {
         out.left[i] = {out.steps, TANGENTIAL};
-        out.where[i] = {n0, vt};
+        out.where[i] = {n0, vt, 0.0};
         attached = false;
       }
     }
@@ -193,8 +228,8 @@ inline Outcome by_collision(const Texture &texture, const GrainTable &table, con
       EXPECT_EQ(out.left.count(table.grain(d.bit)), 0u) << "a grain left twice";
       out.left[table.grain(d.bit)] = {static_cast<int>(k), d.mode};
       out.where[table.grain(d.bit)] = {{d.direction[0], d.direction[1], d.direction[2]},
-                                       {d.velocity[0], d.velocity[1], d.velocity[2]}};
-      EXPECT_EQ(d.before_end, 0.0);
+                                       {d.velocity[0], d.velocity[1], d.velocity[2]},
+                                       d.before_end};
     }
     detached.clear();
     if (handover && k % handover == 0) {
@@ -229,9 +264,11 @@ inline void expect_same(const Outcome &a, const Outcome &b)
   EXPECT_EQ(a.rolling, b.rolling);
   if (a.left != b.left) return;
   for (const auto &[grain, at] : a.where) {
-    const auto &[n, v] = b.where.at(grain);
-    EXPECT_NEAR(size(at.first - n), 0.0, 1.0e-9);
-    EXPECT_NEAR(size(at.second - v), 0.0, 1.0e-7 * (1.0 + size(v)));    // a root near 0 in Eq. 5
+    const Outcome::Place &there = b.where.at(grain);
+    EXPECT_NEAR(size(at.direction - there.direction), 0.0, 1.0e-9);
+    // a root near 0 in Eq. 5
+    EXPECT_NEAR(size(at.velocity - there.velocity), 0.0, 1.0e-7 * (1.0 + size(there.velocity)));
+    EXPECT_NEAR(at.before_end, there.before_end, 1.0e-9 * (1.0e-6 + there.before_end));
   }
 }
 

@@ -33,6 +33,8 @@ double work_from(double y)
   return w(std::pow(6.0, -1.0 / 3.0)) - w(y);
 }
 
+void ring_out(NormalMotion &motion) { motion.advance(3.0 * motion.longest_period()); }
+
 // one reference grain; a load comes evenly
 struct Alone {
   NormalMotion motion;
@@ -80,12 +82,12 @@ TEST(NormalMotion, LeavesWithTheEnergyOfItsBranchAndNotWithLess)
     for (double way : {-1.0, 1.0}) {    // let go, or pushed in first
       Alone grain(0.0);
       grain.kick(way * share * needed);
-      grain.motion.ring_out();
+      ring_out(grain.motion);
       EXPECT_EQ(grain.motion.attached(0), share < 1.0) << share << " " << way;
     }
   Alone damped(1.0);
   damped.kick(-1.5 * needed);
-  damped.motion.ring_out();
+  ring_out(damped.motion);
   EXPECT_TRUE(damped.motion.attached(0));
   EXPECT_NEAR(damped.motion.overlap(0), D0, 0.001 * D0);
 }
@@ -105,7 +107,7 @@ TEST(NormalMotion, SqueezedSlowlyItStaysAndLetGoAtOnceItLeaves)
     grain.advance(share * load, 1.0e-6);
     EXPECT_TRUE(grain.motion.attached(0));
     grain.set(0.0);
-    grain.motion.ring_out();
+    ring_out(grain.motion);
     EXPECT_EQ(grain.motion.attached(0), share < 1.0);
   }
   // in 1000 periods: along the branch at rest, also where it is pulled; it swings by the rate of the load over the
@@ -155,8 +157,8 @@ TEST(NormalMotion, SameAsAReferenceInTinySteps)
       }
       before = load;
     }
-    motion.ring_out();
-    fine.ring_out();
+    ring_out(motion);
+    ring_out(fine);
     for (int k = 0; k < NormalMotion::LANES; k++) {
       // the outermost it comes to, in overlaps of delta_c
       double d = equilibrium_overlap(1.0, 1.0) / breaking_gap(1.0, 1.0), v = 0.0, x = 1.0, last = 0.0, outermost = d;
@@ -187,13 +189,43 @@ TEST(NormalMotion, SameAsAReferenceInTinySteps)
   EXPECT_LT(apart, 10);    // of 768
 }
 
+TEST(NormalMotion, OvershootTellsWhichGrowingLoadsBreakTheContact)
+{
+  const double unit = std::sqrt(DC / HOLD);
+  double before = 0.6;
+  for (double zeta : {0.0, 0.06, 0.2, 0.3, 0.5}) {
+    const double c = overshoot(zeta);
+    EXPECT_LT(c, 0.9 * before);
+    before = c;
+    // at the load that it is found at, and elsewhere by the straight line
+    struct Case {
+      double load, margin;
+    };
+    for (const Case &at : {Case{0.5, 0.01}, Case{0.2, 0.08}, Case{0.8, 0.13}}) {
+      if (zeta > 0.2 && at.load != 0.5) continue;
+      for (double share : {1.0 - at.margin, 1.0 + at.margin}) {
+        const double slope = share * (1.0 - at.load) / c / unit, time = 50.0 * unit;
+        Alone grain(zeta, at.load - 1.5 * slope * time);
+        for (int k = 1; k <= 100; k++)    // from rest to the slope
+          grain.advance(at.load - slope * time * (1.5 - 0.5 * k * k / 1e4), 0.01 * time);
+        grain.advance(at.load, time);
+        ring_out(grain.motion);
+        EXPECT_EQ(grain.motion.attached(0), share < 1.0) << "zeta " << zeta << " load " << at.load << " " << share;
+      }
+    }
+  }
+  // damped well enough, the contact follows its load
+  EXPECT_EQ(overshoot(0.7), 0.0);
+  EXPECT_EQ(overshoot(1.0), 0.0);
+}
+
 TEST(NormalMotion, WhatIsNotANumberTakesNoEndlessSteps)
 {
   for (double wrong : {double(NAN), double(INFINITY), -double(INFINITY), -1.0e300, -1.0e30}) {
     Alone grain(0.2);
     grain.advance(wrong, 1.0e-6);
     grain.set(0.0);
-    grain.motion.ring_out();
+    ring_out(grain.motion);
     EXPECT_EQ(grain.motion.grains(), 1);
   }
 }

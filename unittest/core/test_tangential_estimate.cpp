@@ -31,7 +31,9 @@ TEST(TangentialEstimate, FrictionlessRingOfTheClosedForm)
 TEST(TangentialEstimate, RearGrainsFlyOffWithWhatFrictionLeaves)
 {
   const Texture texture = place_monolayer(RP, RD, 0.2, BareCap(), 1);
-  const GrainTable table(texture, CALCITE, Criteria());
+  Criteria criteria;
+  criteria.tangential = Criteria::ESTIMATE;
+  const GrainTable table(texture, CALCITE, criteria);
   const History h = straight_impact(9.0, 0.2733);
   std::vector<uint64_t> attached = table.all_attached();
   Workspace work;

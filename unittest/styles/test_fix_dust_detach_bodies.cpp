@@ -111,7 +111,7 @@ TEST(FixDustDetachBodies, OrientationFollowsTheSpin)
 TEST(FixDustDetachBodies, HeadOnCollisionIsTheImpactOnARigidWall)
 {
   for (double v : {2.0, 8.0, 12.0})
-    for (const char *tangential : {"estimate", "integrate"}) {
+    for (const char *tangential : {"impulse", "estimate", "integrate"}) {
       Deck wall;
       wall.box();
       wall.carrier(0, 0, 0.7501e-3, 0, 0, -v);
@@ -183,7 +183,7 @@ TEST(FixDustDetachBodies, TurningEverythingChangesNothing)
     std::remove("dust_turned.txt");
     return deck.vector();
   };
-  for (const char *tangential : {"estimate", "integrate"}) {
+  for (const char *tangential : {"impulse", "estimate", "integrate"}) {
     const auto straight = run([](Vec v) { return v; }, tangential);
     const auto turned = run([](Vec v) { return Vec{v[0], -v[2], v[1]}; }, tangential);
     EXPECT_GT(straight[3], 50.0);

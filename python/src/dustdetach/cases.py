@@ -21,19 +21,23 @@ SPEEDS = (
 )
 RESTITUTIONS = (0.5, 0.7, 0.9)
 ANGLES = (15.0, 30.0, 45.0, 60.0, 75.0, 90.0)
+#: laws of tangential lift-off in both figures: the impulse law and the paper's
+LAWS = ("impulse", "estimate")
 
 #: the most cases that one file may ask for
 MOST_CASES = 1_000_000
 
 
 def figure4() -> list[Impact]:
-    """Straight impacts at three coefficients of restitution (the paper's Fig. 4)."""
-    return [Impact(speed=speed, restitution=e) for e in RESTITUTIONS for speed in SPEEDS]
+    """Straight impacts at three coefficients of restitution (the paper's Fig. 4) by two laws of tangential lift-off."""
+    return [
+        Impact(speed=speed, restitution=e, tangential=law) for law in LAWS for e in RESTITUTIONS for speed in SPEEDS
+    ]
 
 
 def figure5() -> list[Impact]:
-    """Oblique impacts at e_pw = 0.7 (the paper's Fig. 5); 90 degrees is straight."""
-    return [Impact(speed=speed, angle=angle) for angle in ANGLES for speed in SPEEDS]
+    """Oblique impacts at e_pw = 0.7 (the paper's Fig. 5) by two laws of tangential lift-off; 90 degrees is straight."""
+    return [Impact(speed=speed, angle=angle, tangential=law) for law in LAWS for angle in ANGLES for speed in SPEEDS]
 
 
 NAMED = {"figure4": figure4, "figure5": figure5}
@@ -53,6 +57,8 @@ def named_or_file(name: str) -> list[Impact]:
 def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
     """The cases by another method, or by ``both`` (first all by functions, in seconds); as they are for ``None``.
 
+    A resolved run stands for all laws of tangential lift-off.
+
     Raises:
         InvalidInput: no such method, or a case that the method does not take.
     """
@@ -61,7 +67,12 @@ def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
     if method not in (*METHODS, "both"):
         raise InvalidInput(f"--method: unknown choice {shown(method)}; allowed: {', '.join(METHODS)}, both")
     chosen = METHODS if method == "both" else (method,)
-    return list(dict.fromkeys(replace(case, method=name) for name in chosen for case in cases))
+    return list(dict.fromkeys(_by(name, case) for name in chosen for case in cases))
+
+
+def _by(method: str, case: Impact) -> Impact:
+    law = Impact.tangential if method == "resolved" else case.tangential
+    return replace(case, method=method, tangential=law)
 
 
 def read_cases(path: str | Path) -> list[Impact]:

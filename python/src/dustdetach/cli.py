@@ -18,7 +18,7 @@ from typing import NoReturn, TypeAlias
 from .cases import NAMED, named_or_file, with_methods
 from .errors import DustError, InvalidInput, one_line
 from .files import writable_file
-from .impact import METHODS, PARAMETER_TYPES, TANGENTIAL, Impact, option
+from .impact import METHODS, PARAMETER_TYPES, RINGING, TANGENTIAL, Impact, option
 from .result import Result
 from .version import __version__
 
@@ -35,7 +35,7 @@ _HELP = {
     "z0": "separation at which van der Waals force and pull-off force are equal, m",
     "friction": "mu_f of grain and carrier",
     "wall_friction": "mu of carrier and wall",
-    "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential integrate",
+    "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential " + " or ".join(RINGING),
     "seed": "of the random texture",
     "tangential": "tangential lift-off: " + ", ".join(TANGENTIAL),
     "timestep": "s",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,8 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 #: for more curves than these: from dark to light in the order of the curves, in a map even to the eye
 COLOUR_MAP = "viridis"
 FORMATS = ("png", "svg")
+#: a second table of a folder, of resolved runs that its sweep has not made
+MORE = "resolved.csv"
 
 _STYLE: Any = {
     "font.size": 9,
@@ -61,9 +63,17 @@ _LABELS = {
     "friction": ("$\\mu_f$ = {:g}", 1.0),
     "wall_friction": ("$\\mu_w$ = {:g}", 1.0),
     "grain_damping": ("$\\zeta$ = {:g}", 1.0),
-    "tangential": ("{}", 1.0),
     "rotation": ("rotation {}", 1.0),
     "timestep": ("$\\Delta t$ = {:g} ns", 1e9),
+}
+
+#: laws of tangential lift-off share the colour of their curve
+_LINES: dict[str, Any] = {
+    "impulse": "solid",
+    "estimate": "dashed",
+    "integrate": "dotted",
+    "frictionless": "dashdot",
+    "off": (0, (1, 3)),
 }
 
 Curve = tuple[float | str | bool, ...]
@@ -73,7 +83,9 @@ Colour = str | tuple[float, float, float, float]
 def plot(folder: str | Path) -> list[Path]:
     """Draw ``figure4`` (straight impacts) and ``figure5`` (angles) from ``folder/results.csv``, what there is of them.
 
-    Lines are the detachment functions, the mean over seeds where there are several; open markers are resolved runs.
+    Lines are the detachment functions, the mean over seeds where there are several, dashed or dotted by other laws of
+    tangential lift-off than the first; open markers are resolved runs. Those of ``folder/resolved.csv``, a table that
+    another sweep has made, are drawn as well if it is there.
 
     Returns:
         The files written, PNG and SVG.
@@ -82,9 +94,14 @@ def plot(folder: str | Path) -> list[Path]:
         InvalidInput: no table, or nothing in it that makes a curve.
     """
     folder = as_path(folder, "plot")
-    results = read_csv(folder / TABLE)
-    for row in results:
-        _check(row, folder / TABLE)
+    results = []
+    for table in (folder / TABLE, folder / MORE):
+        if table.name == MORE and not table.exists():
+            continue
+        rows = read_csv(table)
+        for row in rows:
+            _check(row, table)
+        results += rows
     straight = [result for result in results if result.angle == 90]
     oblique = _at_most_angles(results)
     figures = {}
@@ -169,21 +186,36 @@ def _differing(results: list[Result]) -> list[str]:
     return [name for name in _LABELS if len({getattr(result, name) for result in results}) > 1]
 
 
+def _laws(results: Iterable[Result]) -> list[str]:
+    """The laws of tangential lift-off of the functions; the first one's lines are solid."""
+    found = {result.tangential for result in results if result.method == "functions"}
+    return [law for law in _LINES if law in found]
+
+
 def _panel(axes: Axes, curves: dict[Curve, list[Result]], share: Callable[[Result], float]) -> None:
+    laws = _laws(row for rows in curves.values() for row in rows)
     for rows, (colour, marker) in zip(curves.values(), _looks(len(curves)), strict=True):
-        means = defaultdict(list)
-        for row in rows:
-            if row.method == "functions":
-                means[row.speed].append(share(row))
-        # an unclipped line without points has no place, which upsets the layout
-        if means:
-            speeds = sorted(means)
-            ratios = [sum(means[speed]) / len(means[speed]) for speed in speeds]
-            axes.plot(speeds, ratios, color=colour, marker=marker, clip_on=False)
+        for law in laws:
+            means = defaultdict(list)
+            for row in rows:
+                if row.method == "functions" and row.tangential == law:
+                    means[row.speed].append(share(row))
+            # an unclipped line without points has no place, which upsets the layout
+            if means:
+                speeds = sorted(means)
+                ratios = [sum(means[speed]) / len(means[speed]) for speed in speeds]
+                axes.plot(speeds, ratios, color=colour, clip_on=False, **_line(law, laws, marker))
         resolved = [row for row in rows if row.method == "resolved"]
         if resolved:
             speeds = [row.speed for row in resolved]
             axes.plot(speeds, [share(row) for row in resolved], **_POINT, color=colour, marker=marker)
+
+
+def _line(law: str, laws: list[str], marker: str) -> dict[str, Any]:
+    """Style of a law's line, with markers for the first law alone."""
+    if law == laws[0]:
+        return {"marker": marker}
+    return {"linestyle": _LINES[law], "linewidth": 1.1}
 
 
 _METHOD_NAMES = {"functions": "functions", "resolved": "dust-resolved"}
@@ -220,14 +252,18 @@ def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Li
     """An entry for each curve, with an open marker if all of it is resolved, then what lines and markers mean."""
     differing = _differing(results)
     methods = {result.method for result in results}
+    laws = _laws(results)
     handles = []
     for (curve, rows), (colour, marker) in zip(curves.items(), _looks(len(curves)), strict=True):
         look = _POINT if all(row.method == "resolved" for row in rows) else {}
         words = [_label(name, value) for name, value in zip(differing, curve, strict=True)]
         label = ", ".join(words) or _METHOD_NAMES[rows[0].method]
         handles.append(Line2D([], [], color=colour, marker=marker, label=label, **look))
-    if len(methods) > 1:
+    if len(laws) > 1:
+        handles += [Line2D([], [], color="0.3", label=law, **_line(law, laws, "")) for law in laws]
+    elif len(methods) > 1:
         handles.append(Line2D([], [], color="0.3", label=_METHOD_NAMES["functions"]))
+    if len(methods) > 1:
         handles.append(Line2D([], [], color="0.3", marker="o", **_POINT, label=_METHOD_NAMES["resolved"]))
     return handles
 

@@ -12,7 +12,9 @@ import numpy as np
 from .errors import InvalidInput, shown
 
 METHODS = ("functions", "resolved")
-TANGENTIAL = ("estimate", "integrate", "frictionless", "off")
+#: laws of tangential lift-off that know how a grain's contact rings
+RINGING = ("impulse", "integrate")
+TANGENTIAL = ("impulse", "estimate", "integrate", "frictionless", "off")
 
 #: share of a surface that random sequential placement of discs covers before it jams
 JAMMING = 0.547
@@ -84,10 +86,11 @@ class Impact:
         friction: mu_f between grain and carrier, from 0 to 10.
         wall_friction: mu between carrier and wall, from 0 to 10.
         grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0: below 1 grains ring, and more
-            of them leave; resolved runs and ``tangential="integrate"`` use it.
+            of them leave; resolved runs and `RINGING` laws use it.
         seed: of the random texture, 1 to 900000000.
-        tangential: lift-off on the far side: ``estimate`` (Eqs. 4-6), ``integrate`` (each grain's own sliding and
-            rolling), ``frictionless`` (Eq. 4) or ``off``; resolved runs do not use it.
+        tangential: lift-off on the far side: ``impulse`` (friction as a momentum, rolling as its limit), ``estimate``
+            (Eqs. 4-6), ``integrate`` (each grain's own sliding and rolling), ``frictionless`` (Eq. 4) or ``off``;
+            resolved runs do not use it.
         rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs always
             follow it.
         timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
@@ -111,7 +114,7 @@ class Impact:
     wall_friction: float = 0.05
     grain_damping: float = 1.0
     seed: int = 1
-    tangential: str = "estimate"
+    tangential: str = "impulse"
     rotation: bool = True
     timestep: float = 1e-9
 

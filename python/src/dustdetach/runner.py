@@ -14,7 +14,7 @@ from typing import Any
 from .columns import DetachAtom, DetachVector
 from .errors import InvalidInput, MachineFault
 from .files import as_path, replace_file, writable_file
-from .impact import Impact, as_impact
+from .impact import RINGING, Impact, as_impact
 from .places import find_deck, lammps_module
 from .result import Result
 from .session import lammps_file, lammps_session
@@ -80,7 +80,7 @@ def run(
     variables = {name: parameters[name] for name in _VARIABLES_OF[impact.method]}
     if impact.method == "functions":
         variables["rotation"] = "yes" if impact.rotation else "no"
-        if impact.tangential == "integrate":
+        if impact.tangential in RINGING:
             variables["grain_damping"] = impact.grain_damping
     deck = find_deck(DECKS[impact.method])
     with ExitStack() as stack:
