@@ -26,9 +26,9 @@ from pathlib import Path
 
 import dustdetach
 import matplotlib.pyplot as plt
-from dustdetach import read_cases, sweep
+from dustdetach import Impact, read_cases, sweep
 from dustdetach.figures import draw
-from dustdetach.impact import PARAMETERS
+from dustdetach.impact import PARAMETERS, RINGING
 from dustdetach.result import Result, read_csv, write_csv
 from machine import processor
 
@@ -63,7 +63,7 @@ def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
         print(name, flush=True)
         cases = read_cases(HERE / f"{name}.toml")
         os.environ["DUSTDETACH_INPUTS"] = str(decks(work / "decks"))
-        rows = sweep([replace(case, tangential=law) for case in cases for law in LAWS], work / name, jobs=jobs)
+        rows = sweep([of_law(case, law) for case in cases for law in LAWS], work / name, jobs=jobs)
         kept = HERE / f"{name}.csv"
         if functions:
             rows += [row for row in read_csv(kept) if row.method == "resolved"]
@@ -71,6 +71,11 @@ def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
             rows += sweep([replace(case, method="resolved") for case in cases], work / name, jobs=jobs)
             (HERE / "machine.json").write_text(json.dumps(machine, indent=1) + "\n")
         write_csv(kept, sorted(rows, key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())))
+
+
+def of_law(case: Impact, law: str) -> Impact:
+    """By the functions with a law, some of which know nothing of a grain's damping."""
+    return replace(case, tangential=law, grain_damping=case.grain_damping if law in RINGING else Impact.grain_damping)
 
 
 def decks(folder: Path) -> Path:
@@ -106,8 +111,10 @@ def key(row: Result, *without: str) -> tuple:
 def pairs(rows: Iterable[Result], law: str) -> list[Pair]:
     """Functions with a law of lift-off and resolved run of the same impact."""
     rows = list(rows)
-    functions = {key(row): row for row in rows if row.method == "functions" and row.tangential == law}
-    return [(functions[key(row)], row) for row in rows if row.method == "resolved" and key(row) in functions]
+    unknown = () if law in RINGING else ("grain_damping",)
+    functions = {key(row, *unknown): row for row in rows if row.method == "functions" and row.tangential == law}
+    resolved = [row for row in rows if row.method == "resolved" and key(row, *unknown) in functions]
+    return [(functions[key(row, *unknown)], row) for row in resolved]
 
 
 def reference_rows(data: dict[str, list[Result]]) -> list[Result]:
@@ -145,16 +152,16 @@ def agreement(label: str, compared: list[Pair]) -> list[object]:
 
 def groups(data: dict[str, list[Result]], law: str) -> Iterator[tuple[str, list[Pair]]]:
     """Kinds of impacts and their pairs."""
-    rows = reference_rows(data)
+    compared = pairs(reference_rows(data), law)
+    smooth, rough = ([pair for pair in compared if pair[1].wall_friction == friction] for friction in (0.05, 0.3))
     for damping in DAMPINGS:
-        damped = pairs((row for row in rows if row.grain_damping == damping and row.wall_friction == 0.05), law)
+        damped = [pair for pair in smooth if pair[1].grain_damping == damping]
         straight = [pair for pair in damped if pair[0].angle == 90]
         listed = [pair for pair in straight if pair[0].seed == 1 and pair[0].timestep == 1e-9]
         yield f"straight, zeta {damping:g}", listed
         if len(listed) < len(straight):
             yield "... with other seeds and half time steps", straight
         yield f"oblique, zeta {damping:g}", [pair for pair in damped if pair[0].angle != 90]
-    rough = pairs((row for row in rows if row.wall_friction == 0.3), law)
     yield "wall friction 0.3, zeta 1", rough
     yield "other carriers, grains, walls", pairs(data[OTHERS], law)
 
@@ -393,7 +400,7 @@ def figures(data: dict[str, list[Result]]) -> None:
     with_curves(smooth, lambda row: row.angle == 90, "figure4")
     with_curves(smooth, lambda row: row.restitution == 0.7, "figure5")
     with_curves(damped, lambda row: row.wall_friction == 0.3, "friction")
-    scatter(smooth)
+    scatter([*damped, *data[OTHERS]])
     ringing([row for row in plain if row.wall_friction == 0.05 and row.angle == 90 and row.restitution == 0.7])
 
 

@@ -14,7 +14,6 @@ variable spin             index 2000      # about y, rad/s; above 0 as when it r
 variable restitution      index 0.7       # carrier against wall
 variable wall_friction    index 0.3       # what spin acts through
 variable coverage         index 0.2       # grain cross-sections / carrier surface
-variable bare             index 0.33      # half-angle without grains where the carrier hits, rad
 variable seed             index 1
 variable carrier_diameter index 1.5e-3    # m
 variable grain_diameter   index 20e-6     # m
@@ -61,10 +60,13 @@ fix             move all nve/sphere
 fix             wall all wall/gran granular hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 &
                 ${wall_friction} damping coeff_restitution/limited zplane 0.0 NULL
 
+# half-angle without grains where the carrier hits (rad): -var bare, or as wide as the grains need it, 0.33 for these
+variable        cap string ""
+if "$(is_defined(variable,bare))" then "variable cap string 'bare ${bare}'"
 variable        ringing string ""
 if "$(is_defined(variable,grain_damping))" then "variable ringing string 'damping ${grain_damping}'"
 fix             dust all dust/detach texture monolayer ${grain_diameter} coverage ${coverage} seed ${seed} &
-                bare ${bare} density 2700 hamaker ${hamaker} ${z0} elastic 75e9 0.3 210e9 0.3 friction ${friction} &
+                ${cap} density 2700 hamaker ${hamaker} ${z0} elastic 75e9 0.3 210e9 0.3 friction ${friction} &
                 tangential ${tangential} rotation ${rotation} every 100 ${ringing}
 
 # one line a grain: step, carrier, grain, mode (1 normal, 2 tangential), diameter, position, velocity

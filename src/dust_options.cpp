@@ -240,8 +240,6 @@ void DustOptions::complete()
   }
   if (orientation_seed && !atom->tag_enable)
     error->all(FLERR, "{} orientation random needs atom IDs: atom_modify id yes", command);
-  // a carrier that meets the wall with any side has no use for a side without grains
-  if (orientation_seed && !bare_given) bare.half_angle = 0.0;
 
   const auto absent = [&](double value, const char *key) {
     if (value == UNSET && !reference_units())
@@ -298,15 +296,30 @@ double DustOptions::carrier_radius(int igroup) const
   return largest;
 }
 
+/* ----------------------------------------------------------------------
+   as given, or as wide as these grains need it; a carrier that meets the wall with any side has no use for a side
+   without grains
+------------------------------------------------------------------------- */
+
+Dust::BareCap DustOptions::bare_cap(double radius) const
+{
+  Dust::BareCap cap = bare;
+  if (bare_given) return cap;
+  const double largest = 0.5 * (distributed ? sizes.largest() : diameter);
+  cap.half_angle = orientation_seed ? 0.0 : Dust::bare_half_angle(radius, largest);
+  return cap;
+}
+
 /* ---------------------------------------------------------------------- */
 
 Dust::Texture DustOptions::texture(double radius) const
 {
   Dust::Texture made = from_file;
   if (file.empty()) {
+    const Dust::BareCap cap = bare_cap(radius);
     on_one_rank("texture", [&]() {
-      made = distributed ? Dust::place_monolayer(radius, sizes, coverage, bare, seed)
-                         : Dust::place_monolayer(radius, 0.5 * diameter, coverage, bare, seed);
+      made = distributed ? Dust::place_monolayer(radius, sizes, coverage, cap, seed)
+                         : Dust::place_monolayer(radius, 0.5 * diameter, coverage, cap, seed);
     });
     share(made);
   }

@@ -69,6 +69,7 @@ class DustOptions : protected Pointers {
   void take_distribution(Keywords &);
   template <typename Action> void on_one_rank(const std::string &what, Action) const;
   void share(Dust::Texture &) const;
+  Dust::BareCap bare_cap(double carrier_radius) const;
   void read_file(const std::string &);
   void check_plausible(const Dust::Texture &) const;
 };

@@ -165,3 +165,12 @@ def test_a_resolved_run_allows_less(name, value, words):
     else:
         nearly = 0.99 * float(range_named.split("at most ")[1].split()[0])
     assert Impact(method="resolved", **{**parameters, name: nearly}).method == "resolved"
+
+
+def test_bare_cap_from_the_geometry():
+    assert Impact(speed=8.0).bare == 0.33
+    assert Impact(speed=8.0, grain_diameter=40e-6).bare == 0.40
+    assert Impact(speed=8.0, grain_diameter=40e-6, bare=0.33).bare == 0.33
+    assert Impact(speed=8.0, carrier_diameter=0.1e-3, grain_diameter=5e-6).bare == 0.50
+    with pytest.raises(InvalidInput, match="--bare: nan is not a finite number"):
+        Impact(speed=8.0, bare=math.nan)

@@ -166,9 +166,11 @@ def test_grains_that_ring_leave(tangential):
     assert ringing.dispersion_ratio == pytest.approx(0.9458, abs=0.012)
 
 
-def test_grain_damping_is_nothing_to_the_estimate():
-    fast = Impact(speed=12.0, tangential="estimate")
-    assert run(fast).dispersion_ratio == run(replace(fast, grain_damping=0.06)).dispersion_ratio
+@pytest.mark.parametrize("law", ["estimate", "frictionless", "off"])
+def test_grain_damping_is_refused_where_no_law_knows_it(law):
+    with pytest.raises(InvalidInput, match=f"^--grain-damping: 0.06 does nothing with --tangential {law}"):
+        Impact(speed=12.0, restitution=0.9, tangential=law, grain_damping=0.06)
+    Impact(speed=12.0, restitution=0.9, tangential=law, grain_damping=0.06, method="resolved")
 
 
 def test_half_the_surface_can_be_covered():

@@ -176,10 +176,17 @@ class Impulse {
   bool leaves(const GrainTable::Site &site, const Slide &slide, bool located, Release &release) const
   {
     const double most2 = std::max(dot(slide.after, slide.after), dot(slide.before, slide.before));
-    if (located || may_come_round(slide.dvn, most2, site.shell))
+    if (may_come_round(slide.dvn, most2, site.shell)) {
       for (const Phase &phase : PHASES)
         if (leaves(site, slide, phase, site.hold, release)) return true;
-    return leaves(site, slide, PHASES.back(), slide.hold_at_end, release);
+      return leaves(site, slide, PHASES.back(), slide.hold_at_end, release);
+    }
+    if (!leaves(site, slide, PHASES.back(), slide.hold_at_end, release)) return false;
+    // F_n has only grown: from when on it could leave
+    Release earlier = release;
+    for (size_t k = PHASES.size() - 1; located && k-- > 0 && leaves(site, slide, PHASES[k], site.hold, earlier);)
+      release = earlier;
+    return true;
   }
   bool leaves(const GrainTable::Site &site, const Slide &slide, const Phase &phase, double hold, Release &release) const
   {

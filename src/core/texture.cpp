@@ -24,6 +24,17 @@ std::string Dust::number_text(double x)
 
 /* ---------------------------------------------------------------------- */
 
+double Dust::bare_half_angle(double carrier_radius, double largest_grain_radius)
+{
+  // (15/16 (4/3) pi rho v^2/E*)^(2/5) with rho = 7700 kg/m3, v = 20 m/s and E* = 1.154e11 Pa (hertz.h)
+  constexpr double OVERLAP = 0.025597;
+  const double level =
+      ((1.0 - OVERLAP) * carrier_radius - largest_grain_radius) / (carrier_radius + largest_grain_radius);
+  return std::ceil(100.0 * std::acos(level)) / 100.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
 void Dust::check_sizes(double carrier_radius, double grain_radius, const BareCap &bare)
 {
   if (!(carrier_radius > 0.0 && std::isfinite(carrier_radius)))

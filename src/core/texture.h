@@ -23,6 +23,12 @@ struct BareCap {
   double axis[3] = {0.0, 0.0, -1.0};
 };
 
+/*! Half-angle (rad) of the cap that a carrier of steel needs so that no grain reaches a wall of steel before the
+ *  carrier's largest overlap delta, up to an impact at 20 m/s: cos(half_angle) = (R_p - R_d - delta)/(R_p + R_d),
+ *  rounded up to hundredths. delta/R_p is the same for all sizes, so radii may have any unit; 0.33 for 20 um on
+ *  1.5 mm */
+double bare_half_angle(double carrier_radius, double largest_grain_radius);
+
 /*! One grain: unit vector from the carrier's centre to the grain's, and the grain's radius (length) */
 struct Grain {
   double n[3];

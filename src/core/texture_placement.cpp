@@ -248,13 +248,15 @@ double SizeDistribution::quantile(double fraction) const
   return x50 * std::exp(high * std::log(spread));
 }
 
+double SizeDistribution::largest() const { return quantile(1.0 - CUT); }
+
 /* ----------------------------------------------------------------------
    by volume between the cuts, taken with the probability (finest/x)^3: by number
 ------------------------------------------------------------------------- */
 
 static std::vector<double> draw_radii(const SizeDistribution &sizes, double sum_of_squares, std::mt19937_64 &random)
 {
-  const double finest = sizes.quantile(CUT), coarsest = sizes.quantile(1.0 - CUT);
+  const double finest = sizes.quantile(CUT), coarsest = sizes.largest();
   std::vector<double> radii;
   for (double sum = 0.0; sum < sum_of_squares;) {
     double x;
@@ -335,7 +337,7 @@ Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &siz
   if (!(sizes.spread > (lognormal ? 1.0 : 0.0) && std::isfinite(sizes.spread)))
     throw TextureError(lognormal ? "geometric standard deviation " + number_text(sizes.spread) + " is not above 1"
                                  : "exponent " + number_text(sizes.spread) + " is not above 0");
-  const double largest = 0.5 * sizes.quantile(1.0 - CUT);
+  const double largest = 0.5 * sizes.largest();
   if (!(2.0 * largest < carrier_radius))
     throw TextureError("the coarsest grains of this distribution have diameter " + number_text(2.0 * largest) +
                        ", not below the carrier's radius, " + number_text(carrier_radius));

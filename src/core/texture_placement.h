@@ -23,6 +23,9 @@ struct SizeDistribution {
 
   /*! Diameter below which this fraction of the volume would be without the cut; fraction between 0.01 and 0.99 */
   double quantile(double fraction) const;
+
+  /*! Diameter of the coarsest grains that there can be (length) */
+  double largest() const;
 };
 
 /*! Number of equal grains with the coverage X0 = sum of grain cross-sections / carrier surface: 4 X0 (R_p/R_d)^2 */

@@ -2,6 +2,8 @@
 
 #include "texture.h"
 
+#include "hertz.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,6 +36,22 @@ std::string message(const Texture &t, const std::vector<int> &lines = {})
 }
 
 }    // namespace
+
+// steel on steel at 20 m/s by Hertz: the lowest grains just do not touch at the largest overlap
+TEST(Texture, DefaultBareCapKeepsGrainsOffTheWall)
+{
+  EXPECT_EQ(bare_half_angle(0.75e-3, 10.0e-6), 0.33);
+  EXPECT_EQ(bare_half_angle(750.0, 10.0), 0.33);
+  for (double carrier : {0.05e-3, 0.75e-3, 1.5e-3})
+    for (double grain : {2.5e-6, 10.0e-6, 20.0e-6}) {
+      const double mass = 4.0 / 3.0 * M_PI * carrier * carrier * carrier * 7700.0;
+      const double overlap = hertz_overlap(210e9 / (2.0 * (1.0 - 0.09)), carrier, mass, 20.0);
+      const auto gap = [&](double angle) { return carrier - overlap - grain - (carrier + grain) * std::cos(angle); };
+      const double angle = bare_half_angle(carrier, grain);
+      EXPECT_GT(gap(angle), 0.0);
+      EXPECT_LT(gap(angle - 0.01), 0.0);
+    }
+}
 
 TEST(Texture, NeedsAGrain)
 {

@@ -2,6 +2,8 @@
 
 #include "deck.h"
 
+#include <cstdio>
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +58,26 @@ std::string all_but(size_t place)
 }
 
 }    // namespace
+
+// as written to a texture file
+TEST(FixDustDetachWords, BareCapByDefaultFromTheGeometry)
+{
+  const auto half_angle = [](const std::string &words) {
+    EXPECT_EQ(error("coverage 0.05 seed 1 write dust_words.txt " + words), "");
+    std::ifstream file("dust_words.txt");
+    std::string word;
+    double angle = -1.0;
+    while (file >> word)
+      if (word == "bare" && file >> angle) break;
+    std::remove("dust_words.txt");
+    return angle;
+  };
+  EXPECT_EQ(half_angle("texture monolayer 20e-6"), 0.33);
+  EXPECT_EQ(half_angle("texture monolayer 40e-6"), 0.40);
+  EXPECT_EQ(half_angle("texture monolayer 40e-6 bare 0.33"), 0.33);
+  EXPECT_EQ(half_angle("texture monolayer 40e-6 orientation random 3"), 0.0);
+  EXPECT_EQ(half_angle("texture monolayer 20e-6 distribution lognormal 15e-6 1.5"), 0.39);    // up to 38.5 um
+}
 
 TEST(FixDustDetachWords, AllAtOnceInAnyOrder)
 {

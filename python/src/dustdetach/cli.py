@@ -18,7 +18,7 @@ from typing import NoReturn, TypeAlias
 from .cases import NAMED, named_or_file, with_methods
 from .errors import DustError, InvalidInput, one_line
 from .files import writable_file
-from .impact import METHODS, PARAMETER_TYPES, RINGING, TANGENTIAL, Impact, option
+from .impact import BARE_FROM_GEOMETRY, METHODS, PARAMETER_TYPES, RINGING, TANGENTIAL, Impact, option
 from .result import Result
 from .version import __version__
 
@@ -28,7 +28,7 @@ _HELP = {
     "angle": "between velocity and wall, degrees; 90 is straight",
     "restitution": "coefficient of restitution of carrier and wall",
     "coverage": "X0, grain cross-sections over the carrier's surface",
-    "bare": "half-angle of the bare cap, rad",
+    "bare": "half-angle of the bare cap, rad (so wide that no grain reaches the wall: 0.33 in the reference case)",
     "grain_diameter": "m",
     "carrier_diameter": "m",
     "hamaker": "A_12 of grain and carrier, J; that of two grains stays at 10.1e-20 in a resolved run",
@@ -165,6 +165,8 @@ def _command(commands: _Commands, name: str, text: str, run: Callable[[argparse.
 def _add_parameter(parser: argparse.ArgumentParser, name: str, *, required: bool) -> None:
     kind = {"float": float, "int": int, "str": str}[PARAMETER_TYPES[name]]
     default = getattr(Impact, name, None)
+    if default is BARE_FROM_GEOMETRY:
+        default = None
     parser.add_argument(
         option(name),
         type=kind,

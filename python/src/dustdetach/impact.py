@@ -47,6 +47,12 @@ GRAIN_MODULUS = 1 / ((1 - 0.3**2) / 75e9 + (1 - 0.3**2) / 210e9)
 #: the pull-off force per mass must be that of gravity at least, m/s2, and the surface energy at most this, J/m2
 GRAVITY, LARGEST_SURFACE_ENERGY = 9.81, 10.0
 
+#: a carrier of steel on steel has at this speed, m/s, the largest overlap that the default of the bare cap allows for
+BARE_SPEED = 20.0
+
+#: in place of a bare cap that is not given: as wide as the diameters need it. No value that a user gives is this object
+BARE_FROM_GEOMETRY = float("nan")
+
 #: time steps that resolve an oscillation of a grain on its carrier
 LEAST_GRAIN_STEPS = 30
 
@@ -78,7 +84,8 @@ class Impact:
         restitution: coefficient of restitution e_pw of carrier and wall, above 0 and at most 1.
         coverage: X0, summed cross-section of the grains over the carrier's surface, above 0; random
             placement jams near 0.5, see `largest_coverage`.
-        bare: half-angle of the bare cap where the carrier meets the wall, rad, from 0 to below pi.
+        bare: half-angle of the bare cap where the carrier meets the wall, rad, from 0 to below pi; by default so wide
+            that no grain reaches the wall before the carrier's largest overlap, see `bare_half_angle`.
         grain_diameter: d_d, m, below the carrier's radius; adhesion must hold a grain that is lifted by gravity.
         carrier_diameter: d_p, m, above 0 and at most 1.
         hamaker: A_12 of grain and carrier, J, 1e-22 to 1e-17.
@@ -105,7 +112,7 @@ class Impact:
     angle: float = 90.0
     restitution: float = 0.7
     coverage: float = 0.2
-    bare: float = 0.33
+    bare: float = BARE_FROM_GEOMETRY
     grain_diameter: float = 20e-6
     carrier_diameter: float = 1.5e-3
     hamaker: float = 14.633e-20
@@ -121,7 +128,9 @@ class Impact:
     def __post_init__(self) -> None:
         for field in fields(self):
             # under `from __future__ import annotations` a field's type is its spelling
-            value = _convert(field.name, str(field.type), getattr(self, field.name))
+            value = getattr(self, field.name)
+            if value is not BARE_FROM_GEOMETRY:
+                value = _convert(field.name, str(field.type), value)
             object.__setattr__(self, field.name, value)
 
         _one_of("method", self.method, METHODS)
@@ -133,6 +142,8 @@ class Impact:
         _above("carrier_diameter", self.carrier_diameter, 0.0, 1.0, "m")
         radius = self.carrier_diameter / 2
         _above("grain_diameter", self.grain_diameter, 0.0, radius, "m, the carrier's radius", included=False)
+        if self.bare is BARE_FROM_GEOMETRY:
+            object.__setattr__(self, "bare", bare_half_angle(self.carrier_diameter, self.grain_diameter))
         _from("bare", self.bare, 0.0, math.pi, "rad", included=False)
         _above("coverage", self.coverage, 0.0, self.largest_coverage, "(random placement jams there)")
         _from("hamaker", self.hamaker, 1e-22, 1e-17, "J")
@@ -140,6 +151,12 @@ class Impact:
         _from("friction", self.friction, 0.0, 10.0)
         _from("wall_friction", self.wall_friction, 0.0, 10.0)
         _from("grain_damping", self.grain_damping, 0.0, 100.0)
+        if self.method == "functions" and self.tangential not in RINGING and self.grain_damping != Impact.grain_damping:
+            raise InvalidInput(
+                f"--grain-damping: {self.grain_damping:g} does nothing with --tangential {self.tangential}, which does "
+                f"not know how a grain's contact rings; allowed: {Impact.grain_damping:g}, or --tangential "
+                + " or ".join(RINGING)
+            )
         _from("seed", self.seed, 1, LARGEST_SEED)
         _above("timestep", self.timestep, 0.0, 1e-7, "s")
 
@@ -265,6 +282,22 @@ class Impact:
         if "speed" not in values:
             raise InvalidInput("speed: missing; allowed: above 0 and at most 100 m/s")
         return cls(**values)
+
+
+def bare_half_angle(carrier_diameter: float, grain_diameter: float) -> float:
+    """Half-angle of a bare cap that keeps grains off the wall until the carrier's largest overlap, rad.
+
+    cos theta = (R_p - R_d - delta)/(R_p + R_d), rounded up to hundredths, with Hertz' delta of steel on steel at
+    `BARE_SPEED`, the same share of R_p for all sizes. 0.33 for 20 um on 1.5 mm; the fix and create_dust do the same.
+
+    Args:
+        carrier_diameter: d_p, m.
+        grain_diameter: d_d, m.
+    """
+    mass_per_cube = 4 / 3 * math.pi * CARRIER_DENSITY
+    overlap = (15 * mass_per_cube * BARE_SPEED**2 / (16 * CONTACT_MODULUS)) ** 0.4
+    level = ((1 - overlap) * carrier_diameter - grain_diameter) / (carrier_diameter + grain_diameter)
+    return math.ceil(100 * math.acos(level)) / 100
 
 
 def as_impact(value: object, name: str) -> Impact:
