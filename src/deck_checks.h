@@ -114,7 +114,7 @@ class DeckChecks : protected Pointers {
   void watch_none();
   void look_at_force(int i);
   void look_at_velocity();
-  bool follows(const double *change) const;
+  bool follows(const double *velocity) const;
 
   void check_command() const;
   void look_at_contacts();

@@ -50,8 +50,8 @@ FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
   maxexchange = fixed_size() + 1;
 
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
-  grow_arrays(atom->nmax);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  FixDustDetach::grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) FixDustDetach::set_arrays(i);
   coat.radius = settings.carrier_radius(igroup);
   if (coat.radius > 0.0) build();
   // last, as an error above leaves no fix behind that could be called back

@@ -549,15 +549,13 @@ TEST(DeckChecks, CommandsThatCannotBe)
   const std::string file = "dust_rerun.dump";
   const Result live = run(Case(), [&](Deck &deck, Result &) {
     deck("dump d all custom 1 " + file + " id x y z vx vy vz\nrun 400\nundump d");
-    for (const std::string range : {"", "first 6000 last 6400 ", "first 6000 last 6000 every 1 "}) {
+    const auto expect_refused = [&](const std::string &range) {
       const std::string error = deck.attempt("rerun " + file + " " + range + "dump x y z vx vy vz");
       EXPECT_NE(error.find("Fix dust/detach dust works with run, not with rerun"), std::string::npos) << error;
-    }
+    };
+    for (const char *range : {"", "first 6000 last 6400 ", "first 6000 last 6000 every 1 "}) expect_refused(range);
     deck("reset_timestep 0\ndump d all custom 1 " + file + " id x y z vx vy vz\nrun 0\nundump d");
-    for (const std::string range : {"first 0 last 0 ", "first 0 last 0 every 1 "}) {    // as a run of no steps
-      const std::string error = deck.attempt("rerun " + file + " " + range + "dump x y z vx vy vz");
-      EXPECT_NE(error.find("Fix dust/detach dust works with run, not with rerun"), std::string::npos) << error;
-    }
+    for (const char *range : {"first 0 last 0 ", "first 0 last 0 every 1 "}) expect_refused(range);    // as a run of 0
     deck("run 0 post no");
     const std::string error = deck.attempt("minimize 0 0 10 10");
     EXPECT_NE(error.find("Fix dust/detach dust works with run, not with minimize"), std::string::npos) << error;
