@@ -16,6 +16,10 @@
 #include "granular_model.h"
 #include "modify.h"
 #include "pair_granular.h"
+#include "pair_hybrid_scaled.h"
+
+#include <algorithm>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using Granular_NS::GranularModel;
@@ -101,15 +105,30 @@ bool meet(Meets a, Meets b)
   return a != Meets::NOTHING && b != Meets::NOTHING && (a == Meets::CARRIER || b == Meets::CARRIER);
 }
 
+// a class for the factors of hybrid/scaled, which have no other way out
+class Scaled : public PairHybridScaled {
+ public:
+  // what the forces of a sub-style are multiplied with; whether that is a number, not a variable
+  static std::pair<double, bool> factor(const Pair *all, const Pair *style)
+  {
+    const auto *scaled = dynamic_cast<const PairHybridScaled *>(all);
+    if (!scaled) return {1.0, true};
+    const Pair *const *styles = scaled->*(&Scaled::styles);
+    const auto n = std::find(styles, styles + scaled->*(&Scaled::nstyles), style) - styles;
+    return {(scaled->*(&Scaled::scaleval))[n], (scaled->*(&Scaled::scaleidx))[n] < 0};
+  }
+};
+
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
 
-CarrierContact::CarrierContact(const std::string &_where, GranularModel *model, bool mixed, bool _wall) :
+CarrierContact::CarrierContact(const std::string &_where, GranularModel *model, bool mixed, double factor, bool _wall) :
     where(_where), damping(model->damping_model->name), wall(_wall), law(law_of(model)),
     stiffness(stiffness_of(model, mixed)), pulls(damping_pulls(model)),
     not_stiffened(reason_not_to_stiffen(model, stiffness))
 {
+  stiffness *= factor;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -131,7 +150,7 @@ DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<Meets> &types,
 
   for (Fix *fix : modify->get_fix_list()) {
     if (const auto *wall = dynamic_cast<FixWallGran *>(fix))
-      if (wall->model && acts(fix)) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, true);
+      if (wall->model && acts(fix)) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, 1.0, true);
     look_at_surface(fix, acts);
   }
 }
@@ -154,17 +173,18 @@ void DeckContacts::look_at_surface(const Fix *fix, const std::function<bool(cons
     wrong = fmt::format("Fix {} (surface/global) is moved by fix_modify, which LAMMPS 4 Jul 2026 does wrong: use fix "
                         "surface/local with pair_style surf/granular, and fix move",
                         fix->id);
-  if (acts(fix)) all.emplace_back(std::string("fix ") + fix->id, surface.models[0], false, true);
+  if (acts(fix)) all.emplace_back(std::string("fix ") + fix->id, surface.models[0], false, 1.0, true);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std::vector<Meets> &types)
 {
+  const auto [factor, fixed] = Scaled::factor(force->pair, pair);
   // surf/granular is one, between carriers and the triangles or lines of a fix surface/local
   const bool surfaces = utils::strmatch(style, "^surf/granular");
-  if (surfaces || utils::strmatch(style, "^granular"))
-    return look_at_pairs(dynamic_cast<PairGranular *>(pair), types, surfaces);
+  const bool readable = (surfaces || utils::strmatch(style, "^granular")) && fixed && factor >= 0.0;
+  if (readable) return look_at_pairs(dynamic_cast<PairGranular *>(pair), types, factor, surfaces);
   if (utils::strmatch(style, "^zero")) return;
   bool acts = false;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -172,19 +192,33 @@ void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std
       acts = acts || (meet(types[t], types[u]) && pair->setflag && pair->setflag[t][u]);
   }
   if (!acts) return;
-  other_styles.push_back(style);
-  if (!utils::strmatch(style, "^gran/")) far_styles.push_back(style);
+  other_styles.push_back(fixed ? style : style + " (hybrid/scaled by a variable)");
+  if (!utils::strmatch(style, "^granular") && !utils::strmatch(style, "^gran/") &&
+      !utils::strmatch(style, "^surf/gran"))
+    far_styles.push_back(style);
 }
 
-void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &types, bool surfaces)
+// contacts of one law that several sub-styles give the same types act as one, with the sum of their stiffnesses
+void DeckContacts::add(const CarrierContact &contact)
 {
-  if (!pair || !pair->setflag || !pair->types_indices) return;
+  const auto same = std::find_if(all.begin(), all.end(), [&](const CarrierContact &other) {
+    return other.where == contact.where && other.law == contact.law && contact.law != CarrierContact::OTHER;
+  });
+  if (same == all.end()) return all.push_back(contact);
+  same->stiffness += contact.stiffness;
+  same->pulls = same->pulls || contact.pulls;
+  if (same->not_stiffened.empty()) same->not_stiffened = contact.not_stiffened;
+}
+
+void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &types, double factor, bool surfaces)
+{
+  if (!pair || !pair->setflag || !pair->types_indices || factor == 0.0) return;
   for (int t = 1; t <= atom->ntypes; t++)
     for (int u = t; u <= atom->ntypes; u++) {
       // what is not given has been mixed, but as part of a hybrid it has not all pairs of types
       const bool given = pair->setflag[t][u];
       if (!meet(types[t], types[u]) || !(given || pair == force->pair)) continue;
-      all.emplace_back(fmt::format("pair_coeff {} {}", t, u), pair->models_list[pair->types_indices[t][u]], !given,
-                       surfaces);
+      GranularModel *model = pair->models_list[pair->types_indices[t][u]];
+      add(CarrierContact(fmt::format("pair_coeff {} {}", t, u), model, !given, factor, surfaces));
     }
 }
