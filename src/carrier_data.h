@@ -20,7 +20,8 @@ namespace LAMMPS_NS {
 
 class CarrierData : protected Pointers {
  public:
-  enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: number of the collision
+  // NOT_WEIGHED: in free flight, the mass of its grains not in its own yet. Other states: number of the collision
+  enum { NO_CARRIER = -4, NOT_WEIGHED = -3, FREE_FLIGHT = -2, AT_REST = -1 };
   int *state;
   int *coat;                                      // number of its texture
   double *radius;                                 // when it became a carrier; 0 for other atoms

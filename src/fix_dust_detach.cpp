@@ -24,7 +24,6 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grains is not in the carrier's yet
 static constexpr double RESTART_FORMAT = 2.0;
 
 /* ---------------------------------------------------------------------- */
@@ -53,8 +52,8 @@ FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
   maxexchange = fixed_size() + 1;
 
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
-  grow_arrays(atom->nmax);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  FixDustDetach::grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) FixDustDetach::set_arrays(i);
   adopt();
   // last, as an error above leaves no fix behind that could be called back
   atom->add_callback(Atom::GROW);
@@ -161,7 +160,7 @@ void FixDustDetach::adopt(int i)
 {
   if (settings.emit && atom->type[i] == settings.emit)
     error->one(FLERR, "Fix dust/detach emit {} is also the type of carrier {}", settings.emit, atom->tag[i]);
-  carriers.state[i] = FREE_FLIGHT;
+  carriers.state[i] = NOT_WEIGHED;
   carriers.radius[i] = atom->radius[i];
   carriers.coat[i] = coats.number_of(atom->radius[i]);
   const Dust::GrainTable &table = table_of(i);
@@ -170,16 +169,15 @@ void FixDustDetach::adopt(int i)
   mine.initial += table.grains();
   mine.initial_weight += table.grains() * coats[carriers.coat[i]].mass;
   if (carriers.orientation) carriers.orientation[i] = settings.orientation(atom->tag[i]);
-  carriers.began[i] = NOT_WEIGHED;
 }
 
 // not yet where the fix is made: a restart file may bring carriers that have lost some already
 void FixDustDetach::weigh()
 {
-  if (!settings.lose_mass) return;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (carriers.state[i] == NO_CARRIER || carriers.began[i] != NOT_WEIGHED) continue;
-    carriers.began[i] = 0.0;
+    if (carriers.state[i] != NOT_WEIGHED) continue;
+    carriers.state[i] = FREE_FLIGHT;
+    if (!settings.lose_mass) continue;
     atom->rmass[i] += table_of(i).grains() * table_of(i).mean_mass();
     shedding.mass_changed();
   }
@@ -296,7 +294,9 @@ void FixDustDetach::collide(int i)
 DeckChecks::Course FixDustDetach::course_of(int i) const
 {
   const Dust::Collision &collision = collisions[carriers.state[i]];
-  return {collision.impulse(), collision.peak_acceleration(), table_of(i).min_hold()};
+  const Dust::GrainTable &table = table_of(i);
+  return {collision.impulse(), collision.peak_acceleration(), table.min_hold(),
+          table.max_shell() - table.carrier_radius()};
 }
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)

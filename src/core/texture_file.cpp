@@ -295,9 +295,9 @@ Grain read_grain(Lines &lines, const Texture &texture, bool with_adhesion)
   Grain grain;
   unit_vector(lines, v, grain.n);
   grain.radius = 0.5 * v[3];
-  if (!(grain.radius > 0.0 && grain.radius < texture.carrier_radius))
-    lines.fail("grain diameter " + number_text(v[3]) + " must be above 0 and below the carrier's " +
-               number_text(2.0 * texture.carrier_radius));
+  if (!(v[3] > 0.0 && v[3] < texture.carrier_radius))
+    lines.fail("grain diameter " + number_text(v[3]) + " must be above 0 and below the carrier's radius, " +
+               number_text(texture.carrier_radius));
   grain.adhesion = v[4];
   if (!(grain.adhesion > 0.0))
     lines.fail("the factor of the pull-off force, " + number_text(v[4]) + ", must be above 0");
