@@ -18,7 +18,7 @@ def said(folder: Path, ranks: int, texture: str) -> tuple[int, str]:
     ("texture", "message"),
     [
         (f"{MONOLAYER} write /dev/full", "write /dev/full: it cannot be written: No space left on device"),
-        ("monolayer 1e-6 coverage 3 seed 1", "texture: coverage 3 cannot be placed: it must be at most about 0.54"),
+        ("monolayer 1e-6 coverage 3 seed 1", "texture: coverage 3 cannot be placed: it must be at most about 0.53"),
         ("file none.txt", "texture file none.txt: it cannot be read: No such file or directory"),
         ("file empty.txt", "texture file empty.txt: line 1: a texture file starts with '# dust texture 1'"),
     ],
