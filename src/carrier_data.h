@@ -20,7 +20,8 @@ namespace LAMMPS_NS {
 
 class CarrierData : protected Pointers {
  public:
-  enum { NO_CARRIER = -3, FREE_FLIGHT = -2, AT_REST = -1 };    // other states: number of the collision
+  // NOT_WEIGHED: in free flight, the mass of its grains not in its own yet. Other states: number of the collision
+  enum { NO_CARRIER = -4, NOT_WEIGHED = -3, FREE_FLIGHT = -2, AT_REST = -1 };
   int *state;
   uint64_t **attached;              // a bit a grain, once there is a texture
   Dust::Quaternion *orientation;    // if it is not the same for all for ever: TURN_EVERY steps ago at most, with

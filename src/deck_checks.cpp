@@ -13,11 +13,13 @@
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
+#include "input.h"
 #include "modify.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -26,6 +28,7 @@ using namespace LAMMPS_NS;
 static constexpr double ENOUGH_STEPS = 50.0, ENOUGH_SOFT_STEPS = 12.0;
 static constexpr double SOFTER = 1.05;               // by which a modulus may be too low
 static constexpr double MUCH_SOFTER = 2.0;           // in accelerations, where the modulus is not known
+static constexpr double NEAR = 1.01;                 // of a distance: atoms that touch
 static constexpr double HERTZ = 0.4, HOOKE = 0.5;    // F ~ stiffness^power for the same impact
 
 /* ---------------------------------------------------------------------- */
@@ -53,10 +56,7 @@ void DeckChecks::before_run()
   settle_stiffen();
 }
 
-/* ----------------------------------------------------------------------
-   `rerun` goes through the snapshots of a dump and makes no step: its init() is not at the first step of a run of so
-   many
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void DeckChecks::check_command() const
 {
@@ -66,8 +66,8 @@ void DeckChecks::check_command() const
                dust->id);
   if (utils::strmatch(style, "^respa") || utils::strmatch(style, "^verlet/split"))
     error->all(FLERR, "Fix dust/detach works with run_style verlet, not with {}", style);
-  if (update->whichflag == 1 &&
-      (update->laststep - update->firststep != update->nsteps || update->ntimestep != update->firststep))
+  // it goes through the snapshots of a dump and makes no step, but its init() is that of a run
+  if (input->command && strcmp(input->command, "rerun") == 0)
     error->all(FLERR,
                "Fix dust/detach {} works with run, not with rerun, which gives it the snapshots of a dump in place of "
                "the steps of a collision: unfix it",
@@ -182,6 +182,8 @@ void DeckChecks::check_size(int i, double radius) const
         dust->id, atom->tag[i], 2.0 * atom->radius[i], 2.0 * radius);
 }
 
+bool DeckChecks::is_first_step() const { return update->ntimestep == update->firststep + 1; }
+
 void DeckChecks::check_all_sizes(double radius) const
 {
   for (int i = 0; i < atom->nlocal; i++)
@@ -196,6 +198,15 @@ void DeckChecks::stop_at(int i) const
              atom->tag[i], update->ntimestep);
 }
 
+// whether two atoms touch, nearly, or did so long ago
+bool DeckChecks::is_near(int i, int j, double ago) const
+{
+  double d[3];
+  for (int k = 0; k < 3; k++) d[k] = atom->x[i][k] - atom->x[j][k] - ago * (atom->v[i][k] - atom->v[j][k]);
+  const double reach = NEAR * (atom->radius[i] + atom->radius[j]);
+  return Dust::dot(d, d) < reach * reach;
+}
+
 /* ----------------------------------------------------------------------
    the only atom that carrier i touches; NOBODY if only walls can push it, and then one, or such that are no more than
    90 degrees apart
@@ -203,13 +214,9 @@ void DeckChecks::stop_at(int i) const
 
 int DeckChecks::neighbour(int i) const
 {
-  constexpr double NEAR = 1.01;
   int found = NOBODY;
   for (int j = 0; j < atom->nlocal + atom->nghost; j++) {
-    if (j == i) continue;
-    const double *a = atom->x[i], *b = atom->x[j], d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    const double reach = NEAR * (atom->radius[i] + atom->radius[j]);
-    if (Dust::dot(d, d) >= reach * reach) continue;
+    if (j == i || !is_near(i, j, 0.0)) continue;
     if (found != NOBODY) return SEVERAL;
     found = j;
   }
@@ -252,7 +259,8 @@ void DeckChecks::grains_left(int i, const double *acceleration, const Course &co
 void DeckChecks::collision_over(int i, double steps, const Course &course)
 {
   const double enough = settings.stiffen > 1.0 ? ENOUGH_SOFT_STEPS : ENOUGH_STEPS;
-  if (!(noticed & bit(FEW_STEPS)) && steps > 0.0 && steps < enough && course.peak > course.min_hold)
+  if (!(noticed & bit(FEW_STEPS)) && steps > 0.0 && steps < enough && course.peak > course.min_hold &&
+      !touched_dust(i, course.coarsest))
     notice(
         FEW_STEPS,
         fmt::format("carrier {} was in contact for {} steps, too few to follow its collision: use a timestep of {:.2g} "
@@ -265,6 +273,22 @@ void DeckChecks::collision_over(int i, double steps, const Course &course)
          fmt::format("{} softer than contacts of the carrier material (keyword elastic), and the inertia of carrier {} "
                      "{:.3g} times too small: {}",
                      softness.which, atom->tag[i], softness.factor, softness.advice));
+}
+
+/* ----------------------------------------------------------------------
+   whether what carrier i has just lost contact with is dust: atoms that are no carriers and no larger than its grains,
+   and no other atom. The collision with a carrier or a wall is what should be followed.
+------------------------------------------------------------------------- */
+
+bool DeckChecks::touched_dust(int i, double coarsest) const
+{
+  bool dusty = false;
+  for (int j = 0; j < atom->nlocal + atom->nghost; j++) {
+    if (j == i || !is_near(i, j, update->dt)) continue;
+    if ((atom->mask[j] & dust->groupbit) || !(atom->radius[j] < NEAR * coarsest)) return false;
+    dusty = true;
+  }
+  return dusty;
 }
 
 /* ----------------------------------------------------------------------

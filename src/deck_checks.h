@@ -35,15 +35,15 @@ class DeckChecks : protected Pointers {
 
   // stops if carrier i has another radius than its texture
   void check_size(int i, double radius) const;
-  // the same for all carriers, where a fix changes them
   // a force, torque or spin that is not a number stops the run
   void check_finite(int i, const Dust::Motion &motion) const
   {
     if (!motion.is_finite()) stop_at(i);
   }
+  // stops if any carrier has: where a fix changes sizes, and in the first step of a run, which may have had no init()
   void look_at_sizes(double radius) const
   {
-    if (sizes_change) check_all_sizes(radius);
+    if (sizes_change || is_first_step()) check_all_sizes(radius);
   }
 
   // how a carrier's collision has been so far, as stiff contacts would have it
@@ -51,6 +51,7 @@ class DeckChecks : protected Pointers {
     const double *impulse;    // per mass
     double peak;              // acceleration
     double min_hold;          // pull-off force per grain mass
+    double coarsest;          // radius of the grains
   };
   // in a step with contact force in which grains left carrier i
   void grains_left(int i, const double *acceleration, const Course &);
@@ -83,6 +84,7 @@ class DeckChecks : protected Pointers {
   DeckFixes fixes;
 
   bool sizes_change;    // there is a fix that can
+  bool is_first_step() const;
 
   // contacts of the carriers, as they are in this run
   std::vector<CarrierContact> contacts;
@@ -112,14 +114,16 @@ class DeckChecks : protected Pointers {
   void watch_none();
   void look_at_force(int i);
   void look_at_velocity();
-  bool follows(const double *change) const;
+  bool follows(const double *velocity) const;
 
   void check_command() const;
   void look_at_contacts();
   void settle_stiffen();
   std::vector<Meets> what_atoms_are() const;
   enum { NOBODY = -1, SEVERAL = -2 };
+  bool is_near(int i, int j, double ago) const;
   int neighbour(int i) const;
+  bool touched_dust(int i, double coarsest) const;
   bool pulled_by_one(int i) const;
   void check_all_sizes(double radius) const;
   struct Softness {

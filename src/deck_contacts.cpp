@@ -15,6 +15,10 @@
 #include "granular_model.h"
 #include "modify.h"
 #include "pair_granular.h"
+#include "pair_hybrid_scaled.h"
+
+#include <algorithm>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using Granular_NS::GranularModel;
@@ -100,15 +104,30 @@ bool meet(Meets a, Meets b)
   return a != Meets::NOTHING && b != Meets::NOTHING && (a == Meets::CARRIER || b == Meets::CARRIER);
 }
 
+// a class for the factors of hybrid/scaled, which have no other way out
+class Scaled : public PairHybridScaled {
+ public:
+  // what the forces of a sub-style are multiplied with; whether that is a number, not a variable
+  static std::pair<double, bool> factor(const Pair *all, const Pair *style)
+  {
+    const auto *scaled = dynamic_cast<const PairHybridScaled *>(all);
+    if (!scaled) return {1.0, true};
+    const Pair *const *styles = scaled->*(&Scaled::styles);
+    const auto n = std::find(styles, styles + scaled->*(&Scaled::nstyles), style) - styles;
+    return {(scaled->*(&Scaled::scaleval))[n], (scaled->*(&Scaled::scaleidx))[n] < 0};
+  }
+};
+
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
 
-CarrierContact::CarrierContact(const std::string &_where, GranularModel *model, bool mixed, bool _wall) :
+CarrierContact::CarrierContact(const std::string &_where, GranularModel *model, bool mixed, double factor, bool _wall) :
     where(_where), damping(model->damping_model->name), wall(_wall), law(law_of(model)),
     stiffness(stiffness_of(model, mixed)), pulls(damping_pulls(model)),
     not_stiffened(reason_not_to_stiffen(model, stiffness))
 {
+  stiffness *= factor;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -130,14 +149,16 @@ DeckContacts::DeckContacts(LAMMPS *_lmp, const std::vector<Meets> &types,
 
   for (Fix *fix : modify->get_fix_list())
     if (const auto *wall = dynamic_cast<FixWallGran *>(fix))
-      if (wall->model && acts(fix)) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, true);
+      if (wall->model && acts(fix)) all.emplace_back(std::string("fix ") + fix->id, wall->model, false, 1.0, true);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std::vector<Meets> &types)
 {
-  if (utils::strmatch(style, "^granular")) return look_at_pairs(dynamic_cast<PairGranular *>(pair), types);
+  const auto [factor, fixed] = Scaled::factor(force->pair, pair);
+  const bool readable = utils::strmatch(style, "^granular") && fixed && factor >= 0.0;
+  if (readable) return look_at_pairs(dynamic_cast<PairGranular *>(pair), types, factor);
   if (utils::strmatch(style, "^zero")) return;
   bool acts = false;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -145,19 +166,33 @@ void DeckContacts::look_at_style(Pair *pair, const std::string &style, const std
       acts = acts || (meet(types[t], types[u]) && pair->setflag && pair->setflag[t][u]);
   }
   if (!acts) return;
-  other_styles.push_back(style);
-  if (!utils::strmatch(style, "^gran/") && !utils::strmatch(style, "^surf/gran")) far_styles.push_back(style);
+  other_styles.push_back(fixed ? style : style + " (hybrid/scaled by a variable)");
+  if (!utils::strmatch(style, "^granular") && !utils::strmatch(style, "^gran/") &&
+      !utils::strmatch(style, "^surf/gran"))
+    far_styles.push_back(style);
 }
 
-void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &types)
+// contacts of one law that several sub-styles give the same types act as one, with the sum of their stiffnesses
+void DeckContacts::add(const CarrierContact &contact)
 {
-  if (!pair || !pair->setflag || !pair->types_indices) return;
+  const auto same = std::find_if(all.begin(), all.end(), [&](const CarrierContact &other) {
+    return other.where == contact.where && other.law == contact.law && contact.law != CarrierContact::OTHER;
+  });
+  if (same == all.end()) return all.push_back(contact);
+  same->stiffness += contact.stiffness;
+  same->pulls = same->pulls || contact.pulls;
+  if (same->not_stiffened.empty()) same->not_stiffened = contact.not_stiffened;
+}
+
+void DeckContacts::look_at_pairs(PairGranular *pair, const std::vector<Meets> &types, double factor)
+{
+  if (!pair || !pair->setflag || !pair->types_indices || factor == 0.0) return;
   for (int t = 1; t <= atom->ntypes; t++)
     for (int u = t; u <= atom->ntypes; u++) {
       // what is not given has been mixed, but as part of a hybrid it has not all pairs of types
       const bool given = pair->setflag[t][u];
       if (!meet(types[t], types[u]) || !(given || pair == force->pair)) continue;
-      all.emplace_back(fmt::format("pair_coeff {} {}", t, u), pair->models_list[pair->types_indices[t][u]], !given,
-                       false);
+      GranularModel *model = pair->models_list[pair->types_indices[t][u]];
+      add(CarrierContact(fmt::format("pair_coeff {} {}", t, u), model, !given, factor, false));
     }
 }

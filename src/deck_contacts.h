@@ -22,7 +22,9 @@ class GranularModel;
 struct CarrierContact {
   enum Law { HERTZ, HOOKE, OTHER };
 
-  CarrierContact(const std::string &where, class Granular_NS::GranularModel *model, bool mixed, bool wall);
+  // factor: what multiplies all of the model's forces
+  CarrierContact(const std::string &where, class Granular_NS::GranularModel *model, bool mixed, double factor,
+                 bool wall);
 
   std::string where;      // "pair_coeff 1 1", "fix wall"
   std::string damping;    // name of the model
@@ -48,7 +50,8 @@ class DeckContacts : protected Pointers {
 
  private:
   void look_at_style(class Pair *, const std::string &style, const std::vector<Meets> &types);
-  void look_at_pairs(class PairGranular *, const std::vector<Meets> &types);
+  void look_at_pairs(class PairGranular *, const std::vector<Meets> &types, double factor);
+  void add(const CarrierContact &);
 };
 
 }    // namespace LAMMPS_NS

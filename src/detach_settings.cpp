@@ -7,6 +7,7 @@
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
+#include "group.h"
 
 #include <cmath>
 
@@ -74,6 +75,9 @@ std::vector<Keyword> DetachSettings::keywords()
 
 void DetachSettings::check(int igroup)
 {
+  if (group->dynamic[igroup])
+    error->all(FLERR, "{} group {} is dynamic: carriers are the atoms of a static group", command,
+               group->names[igroup]);
   if (friction == UNSET && !reference_units())
     error->all(FLERR, "{} needs keyword friction (it has a default with units si only)", command);
   if (friction == UNSET) friction = 0.3;

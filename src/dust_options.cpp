@@ -341,9 +341,6 @@ void DustOptions::check_plausible(const Dust::Texture &texture) const
   if (gravity == 0.0) return;
   double largest = 0.0;
   for (const Dust::Grain &grain : texture.grains) largest = std::max(largest, grain.radius);
-  if (2.0 * largest >= texture.carrier_radius)
-    error->all(FLERR, "{} has grains of diameter {:g}: it must be below the carriers' radius, {:g}", command,
-               2.0 * largest, texture.carrier_radius);
   const double pull_off = Dust::pull_off_force(surface_energy, Dust::effective_radius(texture.carrier_radius, largest));
   const double held = pull_off / (4.0 / 3.0 * MathConst::MY_PI * largest * largest * largest * density);
   if (held < gravity)

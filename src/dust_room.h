@@ -12,8 +12,8 @@
 namespace LAMMPS_NS {
 
 /* Where spheres can be put: inside the fixed borders of the box, before the walls that act on all atoms, over no atom,
-   and over none of their own that comes before. All ranks give the same list and get the same answer, whichever rank
-   an atom belongs to and whatever periodic image of it is near. */
+   and over none of their own that comes before. All ranks give the same list and get the same answer, whichever rank an
+   atom belongs to and whatever periodic image of it is near. */
 
 class DustRoom : protected Pointers {
  public:

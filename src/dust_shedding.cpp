@@ -24,12 +24,16 @@
 using namespace LAMMPS_NS;
 
 DustShedding::DustShedding(LAMMPS *_lmp, Fix *_fix, int _emit) :
-    Pointers(_lmp), fix(_fix), emit(_emit), clock(0.0), changed(false), highest(0), slot(nullptr)
+    Pointers(_lmp), fix(_fix), emit(_emit), clock(0.0), changed(false), highest(0), waiting(nullptr), unseen(nullptr)
 {
   if (emit && !atom->tag_enable) error->all(FLERR, "Fix dust/detach emit {} needs atom IDs: atom_modify id yes", emit);
 }
 
-DustShedding::~DustShedding() { memory->destroy(slot); }
+DustShedding::~DustShedding()
+{
+  memory->destroy(waiting);
+  memory->destroy(unseen);
+}
 
 /* ----------------------------------------------------------------------
    new atoms take the places of ghosts, whose contacts with their history LAMMPS must have put away by then
@@ -108,8 +112,8 @@ std::vector<DustShedding::Candidate> DustShedding::gather(const std::function<bo
 {
   std::vector<Candidate> mine;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (slot[i] < 0 || !ready(i)) continue;
-    for (const Grain &g : lists[slot[i]].grains) {
+    if (waiting[i] < 0 || !ready(i)) continue;
+    for (const Grain &g : lists[waiting[i]].grains) {
       Candidate c = {double(atom->tag[i]), g.number, double(comm->me), double(i), g.mass, g.radius, {}, {}, {}, {}};
       std::copy_n(g.x, 3, c.from);
       for (int d = 0; d < 3; d++) c.x[d] = g.x[d] + (clock - g.time) * g.v[d];
@@ -117,8 +121,8 @@ std::vector<DustShedding::Candidate> DustShedding::gather(const std::function<bo
       std::copy_n(g.spin, 3, c.spin);
       mine.push_back(c);
     }
-    drop(slot[i]);
-    slot[i] = NONE;
+    drop(waiting[i]);
+    waiting[i] = NOBODY;
   }
   std::vector<Candidate> all = dust_gather(mine, ALL_RANKS, world);
   std::sort(all.begin(), all.end(), [](const Candidate &a, const Candidate &b) {
@@ -163,8 +167,8 @@ void DustShedding::check_new_ids()
 {
   std::vector<double> mine;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (slot[i] != UNSEEN) continue;
-    slot[i] = NONE;
+    if (!unseen[i]) continue;
+    unseen[i] = 0;
     if (atom->tag[i] <= highest) mine.push_back(double(atom->tag[i]));
   }
   if (highest == 0) return;
@@ -190,25 +194,29 @@ void DustShedding::check_new_ids()
    per-atom data
 ------------------------------------------------------------------------- */
 
-void DustShedding::grow(int nmax) { memory->grow(slot, nmax, "dust/detach:waiting"); }
+void DustShedding::grow(int nmax)
+{
+  memory->grow(waiting, nmax, "dust/detach:waiting");
+  memory->grow(unseen, nmax, "dust/detach:unseen");
+}
 
 DustShedding::List &DustShedding::list_of(int i)
 {
-  if (slot[i] >= 0) return lists[slot[i]];
+  if (waiting[i] >= 0) return lists[waiting[i]];
   if (idle.empty()) {
     idle.push_back(static_cast<int>(lists.size()));
     lists.emplace_back();
   }
-  slot[i] = idle.back();
+  waiting[i] = idle.back();
   idle.pop_back();
-  return lists[slot[i]];
+  return lists[waiting[i]];
 }
 
-void DustShedding::drop(int k)
+void DustShedding::drop(int number)
 {
-  lists[k].grains.clear();
-  lists[k].from_file = false;
-  idle.push_back(k);
+  lists[number].grains.clear();
+  lists[number].from_file = false;
+  idle.push_back(number);
 }
 
 void DustShedding::drop_lost()
@@ -216,7 +224,7 @@ void DustShedding::drop_lost()
   if (idle.size() == lists.size()) return;
   std::vector<bool> used(lists.size(), false);
   for (int i = 0; i < atom->nlocal; i++)
-    if (slot[i] >= 0) used[slot[i]] = true;
+    if (waiting[i] >= 0) used[waiting[i]] = true;
   idle.clear();
   for (size_t k = 0; k < used.size(); k++)
     if (!used[k]) drop(static_cast<int>(k));
@@ -228,11 +236,11 @@ void DustShedding::drop_lost()
 
 void DustShedding::pack(int i, bool for_file, Dust::Packer &to) const
 {
-  if (slot[i] < 0) {
+  if (waiting[i] < 0) {
     to.put(0.0);
     return;
   }
-  const List &list = lists[slot[i]];
+  const List &list = lists[waiting[i]];
   to.put(double(list.grains.size()));
   to.put(list.from_file || for_file);
   double place[3] = {list.carrier[0], list.carrier[1], list.carrier[2]};
@@ -243,7 +251,7 @@ void DustShedding::pack(int i, bool for_file, Dust::Packer &to) const
 
 void DustShedding::unpack(int i, Dust::Unpacker &from)
 {
-  slot[i] = NONE;
+  waiting[i] = NOBODY;
   const auto n = static_cast<size_t>(from.number());
   if (n == 0) return;
   if (!emit)
@@ -262,8 +270,8 @@ void DustShedding::follow_displaced()
 {
   constexpr double ROUND_OFF = 1.0e-9;    // of the carrier's radius: other periodic images
   for (int i = 0; i < atom->nlocal; i++) {
-    if (slot[i] < 0 || !lists[slot[i]].from_file) continue;
-    List &list = lists[slot[i]];
+    if (waiting[i] < 0 || !lists[waiting[i]].from_file) continue;
+    List &list = lists[waiting[i]];
     list.from_file = false;
     double now[3];
     unwrapped(i, now);
@@ -287,7 +295,7 @@ void DustShedding::set(const double *numbers)
 
 double DustShedding::memory_usage() const
 {
-  double bytes = double(atom->nmax) * sizeof(int);
+  double bytes = double(atom->nmax) * 2 * sizeof(int);
   for (const List &list : lists) bytes += sizeof(List) + double(list.grains.capacity()) * sizeof(Grain);
   return bytes;
 }

@@ -61,10 +61,18 @@ class DustShedding : protected Pointers {
 
   // per-atom data
   void grow(int nmax);
-  void copy(int i, int j) { slot[j] = slot[i]; }
-  void set_new(int i) { slot[i] = UNSEEN; }
-  bool is_new(int i) const { return slot[i] == UNSEEN; }
-  void set_seen(int i) { slot[i] = NONE; }
+  void copy(int i, int j)
+  {
+    waiting[j] = waiting[i];
+    unseen[j] = unseen[i];
+  }
+  void set_new(int i)
+  {
+    waiting[i] = NOBODY;
+    unseen[i] = 1;
+  }
+  bool is_new(int i) const { return unseen[i]; }
+  void set_seen(int i) { unseen[i] = 0; }
   // lists of carriers that have left this rank or were deleted
   void drop_lost();
   void pack(int i, bool for_file, Dust::Packer &) const;
@@ -86,18 +94,19 @@ class DustShedding : protected Pointers {
   bool changed;
   tagint highest;    // ID of an atom made here
 
-  // by atom: a list of waiting grains, or
-  enum { UNSEEN = -2, NONE = -1 };
-  int *slot;
+  // by atom
+  enum { NOBODY = -1 };
+  int *waiting;    // number of the list of its grains that wait, or NOBODY
+  int *unseen;     // 1 until its ID has been compared with those that were given here
   struct List {
     std::vector<Grain> grains;
     bool from_file;       // and not in a run since
     double carrier[3];    // where it was in the file, if so
   };
   std::vector<List> lists;
-  std::vector<int> idle;
+  std::vector<int> idle;    // numbers of lists that no carrier has
   List &list_of(int i);
-  void drop(int slot);
+  void drop(int number);
 
   // a grain that wants to become an atom, known to all ranks; doubles only
   struct Candidate {

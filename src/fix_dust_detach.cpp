@@ -24,8 +24,6 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double NOT_WEIGHED = -1.0;    // in began: the mass of the grains is not in the carrier's yet
-
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
@@ -52,8 +50,8 @@ FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
   maxexchange = fixed_size() + 1;
 
   // per-atom data exists before the carriers do: wrong words must stop the run here, where they stand
-  grow_arrays(atom->nmax);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  FixDustDetach::grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) FixDustDetach::set_arrays(i);
   coat.radius = settings.carrier_radius(igroup);
   if (coat.radius > 0.0) build();
   // last, as an error above leaves no fix behind that could be called back
@@ -172,22 +170,22 @@ void FixDustDetach::adopt()
     if (!DustOptions::same_size(atom->radius[i], coat.radius))
       error->one(FLERR, "Fix dust/detach carrier {} has diameter {}, not {} as the others: one texture serves one size",
                  atom->tag[i], 2.0 * atom->radius[i], 2.0 * coat.radius);
-    carriers.state[i] = FREE_FLIGHT;
+    carriers.state[i] = NOT_WEIGHED;
     std::copy(coat.table->all_attached().begin(), coat.table->all_attached().end(), carriers.attached[i]);
     array_atom[i][DetachAtom::ATTACHED] = coat.table->grains();
     mine.initial += coat.table->grains();
     if (carriers.orientation) carriers.orientation[i] = settings.orientation(atom->tag[i]);
-    carriers.began[i] = NOT_WEIGHED;
   }
 }
 
 // not yet where the fix is made: a restart file may bring carriers that have lost some already
 void FixDustDetach::weigh()
 {
-  if (!settings.lose_mass || !coat) return;
+  if (!coat) return;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (carriers.state[i] == NO_CARRIER || carriers.began[i] != NOT_WEIGHED) continue;
-    carriers.began[i] = 0.0;
+    if (carriers.state[i] != NOT_WEIGHED) continue;
+    carriers.state[i] = FREE_FLIGHT;
+    if (!settings.lose_mass) continue;
     atom->rmass[i] += coat.table->grains() * coat.table->mean_mass();
     shedding.mass_changed();
   }
@@ -302,7 +300,8 @@ void FixDustDetach::collide(int i)
 
 DeckChecks::Course FixDustDetach::course_of(const Dust::Collision &collision) const
 {
-  return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold()};
+  return {collision.impulse(), collision.peak_acceleration(), coat.table->min_hold(),
+          coat.table->max_shell() - coat.radius};
 }
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)

@@ -71,8 +71,8 @@ class FixDustDetach : public Fix {
   void build();
 
   CarrierData carriers;
-  static constexpr int NO_CARRIER = CarrierData::NO_CARRIER, FREE_FLIGHT = CarrierData::FREE_FLIGHT,
-                       AT_REST = CarrierData::AT_REST;
+  static constexpr int NO_CARRIER = CarrierData::NO_CARRIER, NOT_WEIGHED = CarrierData::NOT_WEIGHED,
+                       FREE_FLIGHT = CarrierData::FREE_FLIGHT, AT_REST = CarrierData::AT_REST;
   double steps;      // since the fix is there
   bool newcomers;    // atoms were added that may be carriers
   void adopt();

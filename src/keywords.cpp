@@ -26,6 +26,14 @@ Range Range::at_most(double most) const { return {low, most, with_low, true, uni
 Range Range::below(double most) const { return {low, most, with_low, false, units}; }
 Range Range::in(const std::string &their_units) const { return {low, high, with_low, with_high, their_units}; }
 
+// the same, with the limits of numbers themselves where it has none
+Range Range::of_finite() const
+{
+  constexpr double MOST = std::numeric_limits<double>::max();
+  return {std::max(low, -MOST), std::min(high, MOST), with_low || low == -INFINITE, with_high || high == INFINITE,
+          units};
+}
+
 bool Range::holds(double x) const
 {
   return std::isfinite(x) && (with_low ? x >= low : x > low) && (with_high ? x <= high : x < high);
@@ -86,6 +94,7 @@ double Keywords::number(const Range &range, const std::string &name)
   const std::string text = value(name, range.text());
   if (!utils::is_double(text)) wrong(name, text, range.text() == "a number" ? "a number" : "a number " + range.text());
   const double x = std::strtod(text.c_str(), nullptr);
+  if (!std::isfinite(x)) wrong(name, text, range.of_finite().text());
   if (!range.holds(x)) wrong(name, text, range.text());
   return x;
 }
@@ -116,7 +125,9 @@ int Keywords::in_range(const std::string &text, int low, int high, const std::st
   if (!utils::is_integer(text)) wrong(name, text, allowed);
   errno = 0;
   const long long x = std::strtoll(text.c_str(), nullptr, 10);
-  if (errno == ERANGE || x < low || x > high) wrong(name, text, allowed);
+  const bool too_large = x > high;
+  if (too_large && high == MAXSMALLINT) wrong(name, text, fmt::format("a whole number from {} to {}", low, high));
+  if (errno == ERANGE || x < low || too_large) wrong(name, text, allowed);
   return static_cast<int>(x);
 }
 
@@ -142,7 +153,12 @@ int Keywords::one_of(const std::vector<std::string> &choices, const std::string 
 
 /* ---------------------------------------------------------------------- */
 
-std::string Keywords::word(const std::string &name) { return value("", name); }
+std::string Keywords::word(const std::string &name)
+{
+  std::string text = value("", name);
+  if (text.empty()) wrong("", "\"\"", name);
+  return text;
+}
 
 /* ---------------------------------------------------------------------- */
 

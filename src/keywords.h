@@ -34,6 +34,7 @@ struct Range {
   Range below(double most) const;
   Range in(const std::string &their_units) const;    // to be named with the range
 
+  Range of_finite() const;    // with ends where it has none
   bool holds(double) const;
   std::string text() const;    // as in "must be ...": "above 0 and at most 1"
 
@@ -58,7 +59,7 @@ class Keywords : protected Pointers {
   int whole_number_or(const std::string &word, int low, int high);    // low - 1 for that word
   bool yes_or_no();
   int one_of(const std::vector<std::string> &choices, const std::string &name = "");    // its place among the choices
-  std::string word(const std::string &name);    // anything, as the name of a file
+  std::string word(const std::string &name);    // any but an empty one, as the name of a file
   // whether another number follows
   bool number_follows() const;
 

@@ -82,6 +82,7 @@ def test_the_documented_format(tmp_path):
         ("0 1 0 2e-5", "0 1 0 -2e-5", "line 7: grain diameter -2e-05"),
         ("0 1 0 2e-5", "0 1.01 0 2e-5", "line 7: the direction has length 1.01"),
         ("0 1 0 2e-5", "0 1 0 1.5e-3", "line 7: grain diameter 0.0015"),
+        ("0 1 0 2e-5", "0 1 0 1.4e-3", "below the carrier's radius, 0.00075"),
         ("0 1 0 2e-5", "0 0.1411200080598672 -0.9899924966004454 2e-5", "line 7: "),
         ("0 1 0 2e-5", "0.9999 0.01414178206592083 0 2e-5", "overlap"),
     ],

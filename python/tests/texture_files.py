@@ -75,7 +75,7 @@ def direction(chance: random.Random, line: str) -> str:
     numbers = " ".join(f"{part * scale:.17g}" for part in vector)
     if line.startswith("bare"):
         return f"bare {chance.choice((0, 0.33, 3.14, 3.1416))} {numbers}"
-    diameter = chance.choice((2e-5, 1.5e-3, 1.4999999e-3, 1.5000001e-3, 7e-4, 1e-300, 0))
+    diameter = chance.choice((2e-5, 7.5e-4, 7.4999999e-4, 7.5000001e-4, 1.4e-3, 1e-300, 0))
     return f"{numbers} {diameter:.17g}"
 
 

@@ -41,9 +41,9 @@ void Dust::check_sizes(double carrier_radius, double grain_radius, const BareCap
     throw TextureError("carrier diameter " + number_text(2.0 * carrier_radius) + " is not above 0");
   if (!(grain_radius > 0.0 && std::isfinite(grain_radius)))
     throw TextureError("grain diameter " + number_text(2.0 * grain_radius) + " is not above 0");
-  if (grain_radius >= carrier_radius)
-    throw TextureError("grain diameter " + number_text(2.0 * grain_radius) + " is not below the carrier's " +
-                       number_text(2.0 * carrier_radius));
+  if (2.0 * grain_radius >= carrier_radius)
+    throw TextureError("grain diameter " + number_text(2.0 * grain_radius) + " is not below the carrier's radius, " +
+                       number_text(carrier_radius));
   if (!(bare.half_angle >= 0.0 && bare.half_angle < PI))
     throw TextureError("bare half-angle " + number_text(bare.half_angle) + " is not between 0 and pi");
 }

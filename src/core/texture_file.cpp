@@ -282,9 +282,9 @@ Grain read_grain(Lines &lines, const Texture &texture)
   Grain grain;
   unit_vector(lines, v, grain.n);
   grain.radius = 0.5 * v[3];
-  if (!(grain.radius > 0.0 && grain.radius < texture.carrier_radius))
-    lines.fail("grain diameter " + number_text(v[3]) + " must be above 0 and below the carrier's " +
-               number_text(2.0 * texture.carrier_radius));
+  if (!(v[3] > 0.0 && v[3] < texture.carrier_radius))
+    lines.fail("grain diameter " + number_text(v[3]) + " must be above 0 and below the carrier's radius, " +
+               number_text(texture.carrier_radius));
   return grain;
 }
 

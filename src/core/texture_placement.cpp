@@ -338,9 +338,9 @@ Texture Dust::place_monolayer(double carrier_radius, const SizeDistribution &siz
     throw TextureError(lognormal ? "geometric standard deviation " + number_text(sizes.spread) + " is not above 1"
                                  : "exponent " + number_text(sizes.spread) + " is not above 0");
   const double largest = 0.5 * sizes.largest();
-  if (!(largest < carrier_radius))
+  if (!(2.0 * largest < carrier_radius))
     throw TextureError("the coarsest grains of this distribution have diameter " + number_text(2.0 * largest) +
-                       ", not below the carrier's " + number_text(2.0 * carrier_radius));
+                       ", not below the carrier's radius, " + number_text(carrier_radius));
   check_sizes(carrier_radius, largest, bare);
   check_coverage(coverage);
   const double wanted = expected_grains(sizes, 4.0 * coverage * carrier_radius * carrier_radius);

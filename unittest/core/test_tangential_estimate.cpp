@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace Dust;
@@ -45,12 +46,17 @@ TEST(TangentialEstimate, RearGrainsFlyOffWithWhatFrictionLeaves)
   detached.clear();
   ASSERT_TRUE(collision.end(table, spin, attached.data(), work));
   const double needed = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);
+  double peak = 0.0;
+  for (const Vec &a : h.a) peak = std::max(peak, a.z);
   for (const Detachment &d : detached) {
     const Grain &g = texture.grains[table.grain(d.bit)];
     const Vec v = {d.velocity[0], d.velocity[1], d.velocity[2]}, n = {g.n[0], g.n[1], g.n[2]};
-    EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);                   // along the surface,
-    EXPECT_LT(v.z, 0.0);                                    // towards the point of impact,
-    EXPECT_GT(size(v), needed);                             // faster than what adhesion can hold,
-    EXPECT_LT(size(v), dv * std::sqrt(1.0 - n.z * n.z));    // slower than without friction
+    EXPECT_NEAR(dot(v, n), 0.0, 1.0e-12);    // along the surface,
+    EXPECT_LT(v.z, 0.0);                     // towards the point of impact,
+    EXPECT_GT(size(v), needed);              // faster than what adhesion can hold,
+    // and as slow as E_fr of doc/fix_dust_detach.rst leaves it, with F_n/m = -a n_z
+    const double s0 = dv * std::sqrt(1.0 - n.z * n.z), longest = 0.5 * s0 * h.a.size() * h.dt;
+    const double E = 0.5 * CALCITE.friction * (2.0 * HOLD + peak * n.z) * longest;
+    EXPECT_NEAR(size(v), std::sqrt(s0 * s0 - 2.0 * E), 1.0e-9);
   }
 }

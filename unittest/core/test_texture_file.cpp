@@ -167,9 +167,9 @@ TEST(TextureFile, EachRuleNamesTheLineAndWhatIsAllowed)
   is(HEAD + "0 0 0.9989 0.1\n", "line 5: the direction has length 0.9989: it must be 1 within 0.001");
   is(HEAD + "0 1.0011 0 0.1\n", "line 5: the direction has length 1.0011: it must be 1 within 0.001");
   is(HEAD + "0 0 1e200 0.1\n", "line 5: the direction has length inf: it must be 1 within 0.001");
-  for (const char *wrong : {"0", "-0.1", "2", "3"})
+  for (const char *wrong : {"0", "-0.1", "1", "1.867", "3"})
     is(HEAD + "0 0 1 " + wrong + "\n1 0 0 0.1\nend\n",
-       std::string("line 5: grain diameter ") + wrong + " must be above 0 and below the carrier's 2");
+       std::string("line 5: grain diameter ") + wrong + " must be above 0 and below the carrier's radius, 1");
   is(HEAD + "0 0 1 0.1\n# the other\n0.05 0 0.99875 0.1\nend\n", "line 7: the grain overlaps that of line 5");
   is(HEAD + "0 0 1 0.1\n0 0 -1 0.1\nend\n",
      "line 6: the grain lies in the bare cap, 0 rad from its axis: it must be 0.3 at least");
@@ -225,7 +225,7 @@ TEST(TextureFile, OddFilesAreJudgedByTheRules)
     bool right = diameter > 0.0 && half >= 0.0 && half < M_PI && std::fabs(std::fabs(axis[2]) - 1.0) <= 0.001;
     for (auto &g : grains) {
       const double length = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-      right = right && std::fabs(length - 1.0) <= 0.001 && g[3] > 0.0 && g[3] < diameter;
+      right = right && std::fabs(length - 1.0) <= 0.001 && g[3] > 0.0 && g[3] < R;
       for (int d = 0; d < 3; d++) g[d] /= length;
       right = right && (half == 0.0 || std::acos(-g[2]) >= half);
     }

@@ -131,7 +131,7 @@ TEST(TexturePlacement, DenseMonolayersUpToJamming)
 TEST(TexturePlacement, FewLargeGrains)
 {
   const Texture t =
-      place_monolayer(1.0, 0.5, 0.25, BareCap(), 5);    // four grains: the grid of the sphere at its coarsest
+      place_monolayer(1.0, 0.49, 0.25, BareCap(), 5);    // four grains: the grid of the sphere at its coarsest
   EXPECT_EQ(t.grains.size(), 4u);
   EXPECT_GT(least_gap(t), 0.0);
 }

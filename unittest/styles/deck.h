@@ -121,7 +121,7 @@ class Deck {
   int local(int id) const
   {
     const LAMMPS_NS::tagint *tag = tags();
-    const int n = static_cast<int>(lammps_extract_setting(lmp, "nlocal"));
+    const int n = lammps_extract_setting(lmp, "nlocal");
     for (int i = 0; i < n; i++)
       if (tag[i] == id) return i;
     ADD_FAILURE() << "no atom " << id;

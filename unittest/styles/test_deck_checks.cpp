@@ -216,6 +216,36 @@ TEST(DeckChecks, FewStepsInAContact)
   expect_silence(c, 0.0);
 }
 
+// what a grain does to its carrier is no collision to be followed, though light carriers feel it
+TEST(DeckChecks, FewStepsWithDust)
+{
+  const auto warned = [](double diameter, double timestep) {
+    const std::string name = "dust_few_steps.txt";
+    Deck deck;
+    deck("log " + name);
+    deck("units si\natom_style sphere\nboundary f f f\nnewton off\ncomm_modify vel yes\n"
+         "region box block -2e-4 2e-4 -2e-4 2e-4 -2e-4 2e-4\ncreate_box 2 box\ncreate_atoms 1 single 0 0 0\n" +
+         line("create_atoms 2 single 0 0 %.17g\n", 0.501e-4 + 0.5 * diameter) +
+         line("set type 1 diameter 1e-4 density 7700\nset type 2 diameter %.17g density 7700 vz -30\n", diameter) +
+         "neighbor 2e-5 bin\npair_style granular\npair_coeff * * " + contact(0.7) +
+         line("\ntimestep %.17g\n", timestep) +
+         "fix move all nve/sphere\ngroup carriers type 1\nfix dust carriers dust/detach " + REFERENCE_DUST +
+         "\nrun 60 post no");
+    EXPECT_EQ(deck.global(9), 1.0);
+    EXPECT_GT(deck.columns(1)[4], 1e6);
+    EXPECT_LT(deck.columns(1)[3], 40 * timestep);
+    deck("log none");
+    std::ifstream file(name);
+    int found = 0;
+    for (std::string text; std::getline(file, text);) found += text.find("steps, too few") != std::string::npos;
+    std::remove(name.c_str());
+    return found;
+  };
+  EXPECT_EQ(warned(20e-6, 3e-9), 0);
+  EXPECT_EQ(warned(20e-6, 2e-8), 0);    // when contact is lost, they are apart already
+  EXPECT_EQ(warned(40e-6, 3e-9), 1);    // a bead
+}
+
 // contacts softer than the carrier material, and than stiffen says: 0.574
 TEST(DeckChecks, SoftContacts)
 {
@@ -266,6 +296,48 @@ TEST(DeckChecks, SoftContacts)
   c.wall = "granular hooke 2e4 0.7 tangential linear_history 1e3 0 0.05 " + LIMITED;
   c.timestep = 2e-8;
   expect_warning(c, {"fix wall is softer"});
+}
+
+// models whose force is not asked for: by their modulus, which is E if it was given and E* if it was mixed
+TEST(DeckChecks, SoftContactsOfOtherModels)
+{
+  const std::string jkr = " jkr 21e9 0 0.3 0.1 tangential mindlin NULL 0 0.05";
+  Case c;
+  c.pair = "pair_style granular\npair_coeff * *" + jkr;
+  expect_warning(c, {"pair_coeff 1 1 is 10 times softer"});
+  c.pair = "pair_style granular\npair_coeff 1 1" + jkr + "\npair_coeff 2 2" + jkr;
+  c.after = "create_atoms 2 single 4e-3 0 2e-3\nset type 2 diameter 1.5e-3 density 7700\nvelocity all set 0 0 -8";
+  expect_warning(c, {"pair_coeff 1 1 is 10 times softer"});
+}
+
+// hybrid/scaled multiplies what its sub-styles give
+TEST(DeckChecks, SoftContactsThatAreScaled)
+{
+  const auto scaled = [](const std::string &factors, const std::string &moduli) {
+    Case c;
+    c.wall = "";
+    c.height = 0.0;
+    c.second = true;
+    c.pair = "variable ten equal 10\npair_style hybrid/scaled " + factors;
+    size_t n = 0;
+    for (size_t at = 0; at < moduli.size(); at = moduli.find(' ', at) + 1) {
+      const std::string modulus = moduli.substr(at, moduli.find(' ', at) - at);
+      c.pair += "\npair_coeff * * granular " + (moduli.find(' ') < moduli.size() - 1 ? std::to_string(++n) + " " : "") +
+                steel(modulus, LIMITED, "1");
+    }
+    return c;
+  };
+  const Result whole = run(scaled("1.0 granular", "210e9 "));
+  EXPECT_EQ(whole.all(), "");
+  EXPECT_GT(whole.ratio, 0.3);
+  // the same contact, told in other ways
+  expect_silence(scaled("10 granular", "21e9 "), whole.ratio, 0.001);
+  expect_silence(scaled("0.5 granular 0.5 granular", "210e9 210e9 "), whole.ratio, 0.001);
+  expect_silence(scaled("v_ten granular", "21e9 "), whole.ratio, 0.001);
+  expect_silence(scaled("0.0 granular 1.0 granular", "21e9 210e9 "), whole.ratio, 0.001);
+  // one that is softer
+  expect_warning(scaled("0.1 granular", "210e9 "), {"pair_coeff 1 1 is 10 times softer"});
+  expect_warning(scaled("0.25 granular 0.25 granular", "210e9 210e9 "), {"pair_coeff 1 1 is 2 times softer"});
 }
 
 // F ~ S^0.4 for Hertz contacts and S^0.5 for Hooke's
@@ -477,10 +549,14 @@ TEST(DeckChecks, CommandsThatCannotBe)
   const std::string file = "dust_rerun.dump";
   const Result live = run(Case(), [&](Deck &deck, Result &) {
     deck("dump d all custom 1 " + file + " id x y z vx vy vz\nrun 400\nundump d");
-    for (const std::string range : {"", "first 6000 last 6400 ", "first 6000 last 6000 every 1 "}) {
+    const auto expect_refused = [&](const std::string &range) {
       const std::string error = deck.attempt("rerun " + file + " " + range + "dump x y z vx vy vz");
       EXPECT_NE(error.find("Fix dust/detach dust works with run, not with rerun"), std::string::npos) << error;
-    }
+    };
+    for (const char *range : {"", "first 6000 last 6400 ", "first 6000 last 6000 every 1 "}) expect_refused(range);
+    deck("reset_timestep 0\ndump d all custom 1 " + file + " id x y z vx vy vz\nrun 0\nundump d");
+    for (const char *range : {"first 0 last 0 ", "first 0 last 0 every 1 "}) expect_refused(range);    // as a run of 0
+    deck("run 0 post no");
     const std::string error = deck.attempt("minimize 0 0 10 10");
     EXPECT_NE(error.find("Fix dust/detach dust works with run, not with minimize"), std::string::npos) << error;
     deck("run 10 post no\nrun 20 post no pre no");

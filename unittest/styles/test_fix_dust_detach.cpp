@@ -572,6 +572,21 @@ TEST(FixDustDetach, CarriersResizedOrDeletedBetweenRuns)
   EXPECT_NE(deck.attempt("run 10").find("diameter"), std::string::npos);
 }
 
+// a run without init(), in and out of contact
+TEST(FixDustDetach, CarriersResizedInContact)
+{
+  for (const int steps : {50, 1000, 5000}) {    // before contact, in it, after it
+    Deck deck;
+    deck.box();
+    deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
+    deck.wall_and_motion();
+    dust(deck);
+    deck("run " + std::to_string(steps) + " post no\nset group all diameter 1.502e-3");
+    const std::string message = deck.attempt("run 10 pre no post no");
+    EXPECT_NE(message.find("carrier 1 has diameter 0.001502 now, and 0.0015"), std::string::npos) << message;
+  }
+}
+
 TEST(FixDustDetach, CarriersOfTwoSizesNeedTwoFixes)
 {
   Deck deck;

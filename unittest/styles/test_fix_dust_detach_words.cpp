@@ -211,8 +211,7 @@ TEST(FixDustDetachWords, GrainsAreFinerThanTheirCarrier)
 {
   EXPECT_EQ(error("texture monolayer 0.749e-3 coverage 0.2 seed 1"), "");
   const std::string message = error("texture monolayer 0.751e-3 coverage 0.2 seed 1");
-  EXPECT_NE(message.find("grains of diameter 0.000751: it must be below the carriers' radius, 0.00075"),
-            std::string::npos)
+  EXPECT_NE(message.find("grain diameter 0.000751 is not below the carrier's radius, 0.00075"), std::string::npos)
       << message;
 }
 
@@ -321,6 +320,45 @@ TEST(FixDustDetachWords, WrongInputIsNamed)
   Deck points;
   points.box("atomic");
   EXPECT_NE(points.attempt("fix dust all dust/detach " + ok).find("radius"), std::string::npos);
+}
+
+// the range says why: none of these is below what it starts with
+TEST(FixDustDetachWords, ValuesThatNoNumberHolds)
+{
+  const auto is = [](const std::string &words, const std::string &message) {
+    const std::string said = error(REFERENCE_DUST + " " + words);
+    EXPECT_NE(said.find("Fix dust/detach " + message), std::string::npos) << words << " -> " << said;
+  };
+  is("friction 1e400", "friction value 1e400 must be from 0 to 1.79769e+308");
+  is("friction -1e400", "friction value -1e400 must be from 0 to 1.79769e+308");
+  is("rolling 1e400", "rolling value 1e400 must be from 0 to 3.15");
+  is("stiffen 1e999", "stiffen value 1e999 must be from 1 to 1.79769e+308");
+  is("bare 0.3 -1e400 0 0", "bare nx value -1e400 must be from -1.79769e+308 to 1.79769e+308");
+  is("distribution rrsb 2e-5 1e400", "distribution N value 1e400 must be above 0 and at most 1.79769e+308");
+  is("every 3000000000", "every value 3000000000 must be a whole number from 1 to 2147483647");
+  is("every 99999999999999999999", "every value 99999999999999999999 must be a whole number from 1 to 2147483647");
+  is("every 0", "every value 0 must be a whole number, at least 1");
+  is("every -99999999999999999999", "every value -99999999999999999999 must be a whole number, at least 1");
+  is("orientation random 3000000000", "orientation SEED value 3000000000 must be a whole number from 1 to 2147483647");
+  is("emit 99999999999", "emit value 99999999999 must be none or a whole number from 1 to 2");
+  is("write \"\"", "write value \"\" must be the name of a file");
+  is("contact \"\"", "contact value \"\" must be the ID of a fix");
+  const std::string file = error("texture file \"\"");
+  EXPECT_NE(file.find("texture value \"\" must be the name of a file"), std::string::npos) << file;
+}
+
+// the carriers of a run are those that it started with, and those that come to be inserted
+TEST(FixDustDetachWords, ADynamicGroupIsRefused)
+{
+  Deck deck;
+  deck.box();
+  deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
+  deck.wall_and_motion();
+  deck("variable all atom 1\ngroup some dynamic all var all every 1");
+  const std::string message = deck.attempt("fix dust some dust/detach " + REFERENCE_DUST);
+  EXPECT_NE(message.find("Fix dust/detach group some is dynamic: carriers are the atoms of a static group"),
+            std::string::npos)
+      << message;
 }
 
 // each carrier's orientation follows from its ID
