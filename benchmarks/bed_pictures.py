@@ -1,7 +1,7 @@
-"""Pictures of the decks of beds, doc/images/drum.png, drop.png, pour.png and chute.png: runs the decks in a folder,
-unless done, and draws.
+"""Pictures of the decks of beds, doc/images/drum.png, drop.png, sieve.png, pour.png and chute.png: runs the decks in a
+folder, unless done, and draws.
 
-    . build/environment; build/venv/bin/python benchmarks/bed_pictures.py --work WORK [drum drop pour chute]
+    . build/environment; build/venv/bin/python benchmarks/bed_pictures.py --work WORK [drum drop sieve pour chute]
 """
 
 import argparse
@@ -23,7 +23,7 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 LMP = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build")) / "bin/lmp-dust"
 GRAINS = 4500
-EXTRA = {"drum": ["-var", "turns", "0.5"], "drop": ["-var", "field", "field"], "pour": [], "chute": []}
+EXTRA = {"drum": ["-var", "turns", "0.5"], "drop": ["-var", "field", "field"], "sieve": [], "pour": [], "chute": []}
 WALL = {"color": "0.35", "linewidth": 1.2}
 
 
@@ -60,7 +60,8 @@ def draw_carriers(axes, rows: np.ndarray):
     """All carriers seen along y, those in front over those behind, coloured by the dust they have lost; mm."""
     carriers = EllipseCollection(*[2e3 * rows[:, 4]] * 2, 0, units="xy", offsets=1e3 * rows[:, [1, 3]],
                                  offset_transform=axes.transData, cmap="YlOrBr_r", edgecolor="0.25", linewidth=0.15)
-    carriers.set_array(1 - rows[:, 8] / GRAINS)
+    # mass lost and brought, where carriers bring unequally much
+    carriers.set_array(rows[:, 9] / rows[:, 10] if rows.shape[1] > 10 else 1 - rows[:, 8] / GRAINS)
     carriers.set_clim(0, 1)
     axes.add_collection(carriers)
     axes.set_aspect("equal")
@@ -138,6 +139,29 @@ def read_field(file: Path) -> np.ndarray:
     return np.array(cells, dtype=float).reshape(nz, ny, nx)
 
 
+def sieve(folder: Path) -> None:
+    """The heap before and after it has hit the plate, with a scale, and what each fraction loses."""
+    all_frames = frames(folder)
+    steps = sorted(all_frames)
+    figure, axes = plt.subplots(1, 3, figsize=(12.5, 3.9), layout="constrained", width_ratios=(1, 1, 1.1))
+    for place, step in zip(axes, (steps[0], steps[30]), strict=False):
+        carriers = draw_carriers(place, all_frames[step])
+        place.axhline(0, **WALL)
+        place.set(xlim=(-17, 17), ylim=(-3, 22), title=f"{(step - steps[0]) * 1.5e-3:.1f} ms after the fall")
+    axes[0].plot((10, 15), (-1.5, -1.5), color="black", linewidth=2)
+    axes[0].text(12.5, -2.9, "5 mm", ha="center")
+    bar(figure, axes[:2], carriers)
+    columns = table(folder)
+    time = 1e3 * (columns["Time"] - columns["Time"][0])
+    for k, (name, colour) in enumerate((("1.0 mm", "#d98880"), ("1.2 mm", "#c0392b"), ("1.5 mm", "#641e16")), start=1):
+        axes[2].plot(time, columns[f"v_off{k}"], label=name, color=colour)
+    axes[2].plot(time, columns["f_dust"], "k--", label="all")
+    axes[2].set(xlabel="time after the fall, ms", ylabel="dispersion ratio", ylim=(0, 1.02))
+    axes[2].grid(alpha=0.3)
+    axes[2].legend(loc="lower right")
+    save(figure, "sieve")
+
+
 def pour(folder: Path) -> None:
     """The stream on the chute, and the curve."""
     all_frames = frames(folder)
@@ -172,11 +196,11 @@ def chute(folder: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--work", type=Path, required=True)
-    parser.add_argument("decks", nargs="*", default=["drum", "drop", "pour", "chute"])
+    parser.add_argument("decks", nargs="*", default=["drum", "drop", "sieve", "pour", "chute"])
     args = parser.parse_args()
     for deck in args.decks:
         run(deck, args.work / deck)
-        {"drum": drum, "drop": drop, "pour": pour, "chute": chute}[deck](args.work / deck)
+        {"drum": drum, "drop": drop, "sieve": sieve, "pour": pour, "chute": chute}[deck](args.work / deck)
 
 
 if __name__ == "__main__":

@@ -157,7 +157,7 @@ void CarrierData::unpack(int i, Dust::Unpacker &from)
 
 double CarrierData::memory_usage() const
 {
-  double bytes = double(atom->nmax) * (size(0) * sizeof(double) + sizeof(attached[0]));
+  double bytes = double(atom->nmax) * (size(0) * sizeof(double) + sizeof(std::vector<uint64_t>));
   for (const std::vector<uint64_t> &words : attached) bytes += words.capacity() * sizeof(uint64_t);
   return bytes;
 }

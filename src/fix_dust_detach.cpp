@@ -309,8 +309,9 @@ void FixDustDetach::collide(int i)
 DeckChecks::Course FixDustDetach::course_of(int i) const
 {
   const Dust::Collision &collision = collisions[carriers.state[i]];
-  return {collision.impulse(), collision.peak_acceleration(), table_of(i).min_hold(),
-          table_of(i).max_shell() - coats[carriers.coat[i]].radius};
+  const Dust::GrainTable &table = table_of(i);
+  return {collision.impulse(), collision.peak_acceleration(), table.min_hold(),
+          table.max_shell() - table.carrier_radius()};
 }
 
 void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)

@@ -172,25 +172,51 @@ class Impulse {
     return std::min(sliding, rolling) / slip;
   }
 
+  // what F_n at a phase needs of a slide
+  struct Course {
+    double dvn, dv_before, dv_change;    // Dv along n, the velocity before, and its change
+    double before2, both, change2;       // their squares and product
+
+    Course(const double *dv, const Slide &slide) : dvn(slide.dvn)
+    {
+      double change[3];
+      for (int d = 0; d < 3; d++) change[d] = slide.after[d] - slide.before[d];
+      dv_before = dot(dv, slide.before);
+      dv_change = dot(dv, change);
+      before2 = dot(slide.before, slide.before);
+      both = dot(slide.before, change);
+      change2 = dot(change, change);
+    }
+  };
+  // whether F_n/m_d is above `hold` then
+  bool is_lifted(const GrainTable::Site &site, const Course &course, const Phase &phase, double hold) const
+  {
+    const double w2 = course.before2 + phase.velocity * (2.0 * course.both + phase.velocity * course.change2);
+    const double moved = phase.time * course.dv_before + phase.way * course.dv_change;
+    const double dvn = course.dvn + past.duration / site.shell * moved;
+    return amplitude * phase.sine * dvn + w2 / site.shell > hold;
+  }
+
   // whether it leaves, and when, where and with which velocity
   bool leaves(const GrainTable::Site &site, const Slide &slide, bool located, Release &release) const
   {
-    const double most2 = std::max(dot(slide.after, slide.after), dot(slide.before, slide.before));
+    const Course course(past.dv, slide);
+    const size_t end = PHASES.size() - 1;
+    const double most2 = std::max(dot(slide.after, slide.after), course.before2);
+    size_t when = end;
     if (may_come_round(slide.dvn, most2, site.shell)) {
-      for (const Phase &phase : PHASES)
-        if (leaves(site, slide, phase, site.hold, release)) return true;
-      return leaves(site, slide, PHASES.back(), slide.hold_at_end, release);
+      when = 0;
+      while (when < end && !is_lifted(site, course, PHASES[when], site.hold)) when++;
     }
-    if (!leaves(site, slide, PHASES.back(), slide.hold_at_end, release)) return false;
-    // F_n has only grown, to what the velocity makes it: from when on it could leave
-    Release earlier = release;
-    for (size_t k = PHASES.size() - 1; located && k-- > 0; release = earlier) {
-      const double share = max_spin2 > 0.0 ? 1.0 : PHASES[k].velocity;
-      if (share * share * most2 <= site.hold * site.shell || !leaves(site, slide, PHASES[k], site.hold, earlier)) break;
+    if (when == end) {
+      if (!is_lifted(site, course, PHASES[end], slide.hold_at_end)) return false;
+      // F_n has only grown: from when on it could leave
+      while (located && when > 0 && is_lifted(site, course, PHASES[when - 1], site.hold)) when--;
     }
+    if (located) locate(site, slide, PHASES[when], release);
     return true;
   }
-  bool leaves(const GrainTable::Site &site, const Slide &slide, const Phase &phase, double hold, Release &release) const
+  void locate(const GrainTable::Site &site, const Slide &slide, const Phase &phase, Release &release) const
   {
     double *n = release.direction, *w = release.velocity;
     for (int d = 0; d < 3; d++) {
@@ -198,10 +224,8 @@ class Impulse {
       w[d] = slide.before[d] + phase.velocity * change;
       n[d] = site.n[d] + past.duration / site.shell * (phase.time * slide.before[d] + phase.way * change);
     }
-    const double w2 = dot(w, w);
-    if (amplitude * phase.sine * dot(past.dv, n) + w2 / site.shell <= hold) return false;
     // on the sphere
-    const double inv_size = 1.0 / std::sqrt(dot(n, n));
+    const double w2 = dot(w, w), inv_size = 1.0 / std::sqrt(dot(n, n));
     for (int d = 0; d < 3; d++) n[d] *= inv_size;
     const double along = dot(w, n), left = w2 - along * along, longer = left > 0.0 ? std::sqrt(w2 / left) : 0.0;
     // what is left of Dv then, and of the way
@@ -212,7 +236,6 @@ class Impulse {
       release.carrier_velocity[d] = (1.0 - phase.velocity) * past.dv[d];
       release.carrier_place[d] = -way_left * past.dv[d];
     }
-    return true;
   }
 };
 

@@ -1,4 +1,5 @@
-"""The decks of beds at small size: they run through on a stock LAMMPS with the plugin, and what they show holds.
+"""The decks of beds at small size, and that of an inhaler: they run through on a stock LAMMPS with the plugin, and what
+they show holds.
 
 Runs the programs of one build: DUST_BUILD_DIR (set by ./bootstrap test), or build/ of this checkout.
 """
@@ -197,6 +198,23 @@ def test_wrong_values_are_named_in_one_line(tmp_path, deck, variable, value):
     said = [line for line in done.stdout.splitlines() if line.startswith(f"{variable} {value} must")]
     assert len(said) == 1, done.stdout
     assert "ERROR" not in done.stdout
+
+
+def test_a_carrier_of_an_inhaler_loses_half_by_lift_off(tmp_path):
+    def shares(**variables: str) -> tuple[float, float, float]:
+        text = output("in.impact.inhaler", tmp_path, **variables)
+        patterns = (r"^detached: lift-off (\S+),", r"^met: sliding \S+, rolling (\S+)$", r"^dispersion ratio (\S+):")
+        assert re.search(r"882 grains", text), text[-2000:]
+        return tuple(number(pattern, text) for pattern in patterns)
+
+    lifted, rolling, ratio = shares(speed="9")
+    assert 0.45 < lifted < 0.5 < ratio < 1.0
+    assert rolling == 1.0
+    assert shares(speed="9", criteria="ibrahim")[2] == 1.0
+    # on a rough wall the best angle goes from 45 to 90 degrees with the speed
+    rough = {"wall_friction": "0.6"}
+    assert shares(speed="4", angle="45", **rough)[2] > shares(speed="4", angle="90", **rough)[2] + 0.1
+    assert shares(speed="12", angle="45", **rough)[2] < shares(speed="12", angle="90", **rough)[2] - 0.05
 
 
 def shares(text: str) -> list[float]:

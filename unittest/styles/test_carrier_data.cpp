@@ -43,10 +43,10 @@ TEST(CarrierData, StandsAsItHasTurned)
 
   carriers.copy(0, 1);
   expect_turned(carriers.standing(1), 0.7);
-  std::vector<double> numbers(carriers.size());
+  std::vector<double> numbers(carriers.size(0));
   Dust::Packer to(numbers.data());
   carriers.pack(1, to);
-  EXPECT_EQ(to.size(), carriers.size());
+  EXPECT_EQ(to.size(), carriers.size(0));
   carriers.angle[0][2] = 0.0;
   Dust::Unpacker from(numbers.data());
   carriers.unpack(0, from);

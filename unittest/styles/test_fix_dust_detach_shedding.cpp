@@ -145,16 +145,16 @@ TEST(FixDustDetachShedding, TheOutputWindowDoesNotMatter)
 {
   const auto rebound = [](const std::string &options) {
     Deck deck;
-    deck(
-        "units si\natom_style sphere\nboundary f f f\nnewton off\ncomm_modify vel yes\n"
-        "region box block -0.5e-3 0.5e-3 -0.5e-3 0.5e-3 -0.1e-3 0.9e-3\ncreate_box 1 box\n"
-        "create_atoms 1 single 0 0 50.05e-6\nset group all diameter 100e-6 density 1540\nvelocity all set 0 0 -10\n"
-        "timestep 1e-10\npair_style none\nfix move all nve/sphere\n"
-        "fix wall all wall/gran granular hertz/material 24e9 0.7 0.3 tangential mindlin NULL 0 0.05 damping "
-        "coeff_restitution/limited zplane 0 NULL\n"
-        "fix dust all dust/detach texture monolayer 5e-6 coverage 0.45 seed 1 tangential estimate density 1340 surface "
-        "0.005 elastic 2e9 0.3 24e9 0.3 friction 0.3 " +
-        options + "\nrun 8000 post no");
+    deck("units si\natom_style sphere\nboundary f f f\nnewton off\ncomm_modify vel yes\n"
+         "region box block -0.5e-3 0.5e-3 -0.5e-3 0.5e-3 -0.1e-3 0.9e-3\ncreate_box 1 box\n"
+         "create_atoms 1 single 0 0 50.05e-6\nset group all diameter 100e-6 density 1540\nvelocity all set 0 0 -10\n"
+         "timestep 1e-10\npair_style none\nfix move all nve/sphere\n"
+         "fix wall all wall/gran granular hertz/material 24e9 0.7 0.3 tangential mindlin NULL 0 0.05 damping "
+         "coeff_restitution/limited zplane 0 NULL\n"
+         "fix dust all dust/detach texture monolayer 5e-6 coverage 0.45 seed 1 bare 0.33 tangential estimate density "
+         "1340 surface "
+         "0.005 elastic 2e9 0.3 24e9 0.3 friction 0.3 " +
+         options + "\nrun 8000 post no");
     return deck.atom("v", 1)[2] / 10.0;
   };
   const double reference = rebound("mass yes every 1");
@@ -622,7 +622,7 @@ TEST(FixDustDetachShedding, GrainsThatComeToAWallFindNoRoom)
       deck.carrier(0, 0, 0.7501e-3, 0, 0, -8.0);
       deck("group carriers id 1\nregion up block INF INF INF INF 0 INF\nfix move all nve/sphere\nfix wall " +
            std::string(group) + (wall[0] == 'r' ? " wall/gran/region" : " wall/gran") + " granular " + contact(0.7) +
-           " " + wall + "\nfix dust carriers dust/detach texture monolayer 40e-6 coverage 0.2 seed 1 emit 2");
+           " " + wall + "\nfix dust carriers dust/detach texture monolayer 40e-6 coverage 0.2 seed 1 bare 0.33 emit 2");
       const double mass = books(deck).mass;
       deck("run 5000 post no");
       double lowest = 1.0;
