@@ -116,7 +116,7 @@ TEST(CreateDust, CarriersOfSeveralSizesHaveATextureEach)
     std::vector<std::array<double, 4>> grains;
     const auto *radius = static_cast<double *>(lammps_extract_atom(deck.lmp, "radius"));
     auto **x = static_cast<double **>(lammps_extract_atom(deck.lmp, "x"));
-    const int n = static_cast<int>(lammps_extract_setting(deck.lmp, "nlocal"));
+    const int n = lammps_extract_setting(deck.lmp, "nlocal");
     for (int i = 0; i < n; i++)
       if (radius[i] < 0.1e-3) grains.push_back({x[i][0], x[i][1], x[i][2], radius[i]});
     return grains;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,6 +18,13 @@ using namespace LAMMPS_NS;
 namespace {
 
 constexpr double RD = 10.0e-6;
+
+std::string joined(std::initializer_list<std::string> words)
+{
+  std::string all;
+  for (const std::string &word : words) all += word;
+  return all;
+}
 
 // carriers just above the wall, one each 3 mm; in the order of their IDs
 void carriers(Deck &deck, const std::vector<double> &diameters, double vx = 1.0, double vz = -8.0)
@@ -79,14 +87,14 @@ TEST(FixDustDetachSizes, OneFixGivesEachSizeWhatAFixOfItsOwnGives)
   const std::vector<std::string> groups = {"id 1", "id 2 4", "id 3"};
   for (const std::string words : {"", "orientation random 7", "tangential integrate", "criteria ibrahim rotation no",
                                   "mass yes", "distribution lognormal 15e-6 1.3 spread 2"}) {
-    const std::string dust = "dust/detach " + REFERENCE_DUST + " every 9000 " + words;
+    const std::string dust = joined({"dust/detach ", REFERENCE_DUST, " every 9000 ", words});
     Deck one, own;
     carriers(one, sieve);
     carriers(own, sieve);
-    one("fix dust all " + dust + " sizes 0\nrun 9000 post no");
+    one(joined({"fix dust all ", dust, " sizes 0\nrun 9000 post no"}));
     for (size_t g = 0; g < groups.size(); g++) {
       const std::string name = std::to_string(g);
-      own("group g" + name + " " + groups[g] + "\nfix d" + name + " g" + name + " " + dust);
+      own(joined({"group g", name, " ", groups[g], "\nfix d", name, " g", name, " ", dust}));
     }
     own("run 9000 post no");
     const std::map<int, const char *> fix_of = {{1, "d0"}, {2, "d1"}, {3, "d2"}, {4, "d1"}};
@@ -215,7 +223,7 @@ TEST(FixDustDetachSizes, NewSizesComeAndOldOnesGo)
   const auto *tag = deck.tags();
   double attached = 0.0, gone = of_first;
   for (int i = 0; i < 2; i++) {
-    const double now = deck.columns(static_cast<int>(tag[i]))[DetachAtom::ATTACHED];
+    const double now = deck.columns(tag[i])[DetachAtom::ATTACHED];
     attached += now;
     gone += (tag[i] == 2 ? grains_on(1.0e-3) : grains_on(1.5e-3)) - now;
   }
@@ -238,7 +246,7 @@ TEST(FixDustDetachSizes, GrainsOfAllSizesOfCarriersAreEmittedWhereTheyWere)
   const double grain = 4.0 / 3.0 * M_PI * RD * RD * RD * 2700.0, *mass = nullptr;
   mass = static_cast<double *>(lammps_extract_atom(deck.lmp, "rmass"));
   double sum = 0.0, bare = 0.0;
-  for (int i = 0; i < static_cast<int>(lammps_extract_setting(deck.lmp, "nlocal")); i++) sum += mass[i];
+  for (int i = 0; i < lammps_extract_setting(deck.lmp, "nlocal"); i++) sum += mass[i];
   for (double d : {1.5e-3, 1.0e-3}) bare += M_PI / 6.0 * d * d * d * 7700.0;
   EXPECT_NEAR(sum - bare, deck.global(1) * grain, 1.0e-9 * sum);
 }
@@ -259,25 +267,25 @@ TEST(FixDustDetachSizes, RestartWithTheLargestCarrierGone)
   for (const std::string more : {"", "sizes 0"}) {
     Deck whole;
     carriers(whole, {1.6e-3, 1.47e-3, 1.1e-3});
-    whole("fix " + words + more +
-          "\nrun 1000 post no\ngroup gone id 1\ndelete_atoms group gone compress no\n"
-          "group gone delete\nrun 500 post no\nwrite_restart dust_sizes.restart");
+    whole(joined({"fix ", words, more,
+                  "\nrun 1000 post no\ngroup gone id 1\ndelete_atoms group gone compress no\n"
+                  "group gone delete\nrun 500 post no\nwrite_restart dust_sizes.restart"}));
     const auto go_on = [](Deck &deck) {
       deck("run 100 post no");
       add(deck, 4, 1.3e-3, -5.0);
       deck("run 6000 post no");
       const auto *tag = deck.tags();
-      const int n = static_cast<int>(lammps_extract_setting(deck.lmp, "nlocal"));
+      const int n = lammps_extract_setting(deck.lmp, "nlocal");
       std::vector<std::vector<double>> all = {deck.vector()};
-      for (int i = 0; i < n; i++) all.push_back(deck.columns(static_cast<int>(tag[i])));
+      for (int i = 0; i < n; i++) all.push_back(deck.columns(tag[i]));
       std::sort(all.begin() + 1, all.end());
       return all;
     };
     Deck rest;
     rest("units si\nread_restart dust_sizes.restart\ncomm_modify vel yes\ntimestep 1e-9\nneighbor 3e-4 bin\n"
-         "pair_style granular\npair_coeff * * " +
-         contact(0.7) + "\nfix move all nve/sphere\nfix wall all wall/gran granular " + contact(0.7, 0.3) +
-         " zplane 0.0 NULL\nfix " + words + more);
+         "pair_style granular");
+    rest(joined({"pair_coeff * * ", contact(0.7), "\nfix move all nve/sphere"}));
+    rest(joined({"fix wall all wall/gran granular ", contact(0.7, 0.3), " zplane 0.0 NULL\nfix ", words, more}));
     // the wall's history comes back in setup: forces alike to 1e-10, and the same grains leave
     const auto expected = go_on(whole), found = go_on(rest);
     ASSERT_EQ(found.size(), expected.size());
