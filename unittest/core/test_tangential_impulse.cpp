@@ -111,7 +111,9 @@ TEST(TangentialImpulse, FrictionTakesAtMostWhatMakesAGrainRoll)
   m.friction = 0.0;
   const std::map<int, Vec> smooth = velocities(GrainTable(texture, m, with(Criteria::IMPULSE)), h);
   for (const auto &[grain, v] : free)
-    if (direction(texture.grains[grain]).z > NORTH) EXPECT_NEAR(size(smooth.at(grain)), size(v), 1.0e-12);
+    if (direction(texture.grains[grain]).z > NORTH) {
+      EXPECT_NEAR(size(smooth.at(grain)), size(v), 1.0e-12);
+    }
 }
 
 TEST(TangentialImpulse, FrictionIsTheMomentumSummedOverTheCollision)
@@ -141,8 +143,12 @@ TEST(TangentialImpulse, FrictionIsTheMomentumSummedOverTheCollision)
         EXPECT_LT(std::fabs(w), 1.006 * size(v));
       }
       EXPECT_GT(slid + rolled, 800);
-      if (friction == 0.3) EXPECT_GT(slid, 100);
-      if (friction == 0.6) EXPECT_GT(rolled, 100);
+      if (friction == 0.3) {
+        EXPECT_GT(slid, 100);
+      }
+      if (friction == 0.6) {
+        EXPECT_GT(rolled, 100);
+      }
     }
 }
 

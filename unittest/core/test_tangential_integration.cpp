@@ -178,7 +178,8 @@ TEST(TangentialIntegration, ADampedContactOpensInTheEndIfNothingSlowsTheGrain)
     const std::map<int, Mode> left = by_collision(GrainTable(texture, m, integrate()), h);
     for (size_t k = 0; k < texture.grains.size(); k++) {
       const double load = largest_load(texture.grains[k], RP, m, h);
-      if (std::fabs(load - 1.0) > 1.0 / 300.0) EXPECT_EQ(left.count(k), at_once.count(k)) << zeta << " load " << load;
+      if (std::fabs(load - 1.0) < 1.0 / 300.0) continue;
+      EXPECT_EQ(left.count(k), at_once.count(k)) << zeta << " load " << load;
     }
   }
 }
