@@ -174,11 +174,11 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
           const double tau = k * M_PI / 12.0, omega = M_PI / contact_time;
           const Vec w = w0 + std::pow(std::sin(0.5 * tau), 2) * (vt - w0);
           const Vec moved = tau / omega * w0 + 0.5 / omega * (tau - std::sin(tau)) * (vt - w0);
-          const Vec now = n0 + 1.0 / r_pd * moved, lift = most * std::sin(tau) / size(dv) * dv;
-          if (dot(lift, now) + mass * dot(w, w) / r_pd <= fc) continue;
+          const Vec arm = n0 + 1.0 / r_pd * moved, lift = most * std::sin(tau) / size(dv) * dv;
+          if (dot(lift, arm) + mass * dot(w, w) / r_pd <= fc) continue;
           out.left[i] = {out.steps, TANGENTIAL};
           // on the sphere, with its speed
-          const Vec there = 1.0 / size(now) * now, along = w - dot(w, there) * there;
+          const Vec there = 1.0 / size(arm) * arm, along = w - dot(w, there) * there;
           out.where[i] = {there, (size(along) > 0.0 ? size(w) / size(along) : 0.0) * along,
                           contact_time * (1.0 - k / 12.0)};
           attached = false;
