@@ -21,7 +21,8 @@ class DustAtoms : protected Pointers {
   // of the atoms of all ranks
   static tagint highest_tag(class LAMMPS *);
 
-  void create(int type, tagint, const double *x, double radius, double mass, const double *v, const double *omega);
+  void create(int type, tagint tag, const double *place, double radius, double mass, const double *v,
+              const double *omega);
   // after the last one; returns the number made on all ranks: fewer than asked for if some lay outside the box
   bigint finish();
 

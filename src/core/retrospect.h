@@ -19,7 +19,7 @@ namespace Dust {
  * Forces that are not contact forces, such as gravity, do not count. */
 class Retrospect {
  public:
-  explicit Retrospect(const ImpulseRecord &record);
+  explicit Retrospect(const ImpulseRecord &impulses);
 
   /*! u and r, along the axes of the record
    *  \param before_end  s; what is more than the time of the record counts as that time */
