@@ -94,6 +94,12 @@ Dust::Quaternion CarrierData::standing(int i) const
   return now;
 }
 
+void CarrierData::show_standing()
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (state[i] != NO_CARRIER) std::copy_n(standing(i).q, 4, columns[i] + DetachAtom::QW);
+}
+
 /* ---------------------------------------------------------------------- */
 
 void CarrierData::close_window()
@@ -130,7 +136,7 @@ void CarrierData::pack(int i, Dust::Packer &to) const
   to.put(state[i] >= 0 ? 0 : state[i]);
   to.put(coat[i]);
   to.put(radius[i]);
-  to.put(columns[i], DetachAtom::SIZE);
+  to.put(columns[i], DetachAtom::QW);    // the rest is made anew where it is shown
   to.put(window_mass[i]);
   to.put(began[i]);
   if (orientation) to.put(&orientation[i], 1);
@@ -144,7 +150,7 @@ void CarrierData::unpack(int i, Dust::Unpacker &from)
   state[i] = static_cast<int>(from.number());
   coat[i] = static_cast<int>(from.number());
   radius[i] = from.number();
-  from.get(columns[i], DetachAtom::SIZE);
+  from.get(columns[i], DetachAtom::QW);
   window_mass[i] = from.number();
   began[i] = from.number();
   if (orientation) from.get(&orientation[i], 1);

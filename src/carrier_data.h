@@ -46,6 +46,7 @@ class CarrierData : protected Pointers {
   static constexpr int TURN_EVERY = 16;
   void turn();
   Dust::Quaternion standing(int i) const;    // now
+  void show_standing();                      // in the columns
 
   void close_window();    // its mass becomes a column
   double attached_grains(int groupbit) const;

@@ -33,7 +33,7 @@ enum {
 
 // columns of the per-atom array
 namespace DetachAtom {
-enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, SIZE };
+enum { ATTACHED, MASS, WINDOW_MASS, CONTACT_TIME, PEAK_ACCELERATION, QW, QX, QY, QZ, SIZE };
 }
 
 // columns of the local array

@@ -14,6 +14,7 @@
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "output.h"
 #include "update.h"
 
 #include <algorithm>
@@ -124,6 +125,7 @@ void FixDustDetach::setup(int /*vflag*/)
     } else
       spin_off(i);
   }
+  carriers.show_standing();
   if (settings.lose_mass) tell_ghosts();
 }
 
@@ -258,6 +260,7 @@ void FixDustDetach::post_force(int /*vflag*/)
     }
   }
   if (spins && update->ntimestep % CarrierData::TURN_EVERY == 0) carriers.turn();
+  if (update->ntimestep == output->next) carriers.show_standing();
   if (rows.is_open() && update->ntimestep % settings.every == 0) close_window();
   if (settings.lose_mass) tell_ghosts();
 }

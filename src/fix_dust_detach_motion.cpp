@@ -7,6 +7,7 @@
 #include "fix_dust_detach.h"
 
 #include "atom.h"
+#include "output.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
@@ -38,6 +39,7 @@ void FixDustDetach::end_of_step()
     if ((atom->mask[i] & groupbit) && carriers.state[i] != NO_CARRIER) follow(i);
     motions.remember(i, carriers.before[i]);    // what it has lost may have changed its velocity
   }
+  if (update->ntimestep == output->next) carriers.show_standing();
   if (rows.is_open() && update->ntimestep % settings.every == 0) close_window();
   if (settings.lose_mass) tell_ghosts();
 }

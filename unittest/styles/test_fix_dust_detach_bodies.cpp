@@ -106,6 +106,29 @@ TEST(FixDustDetachBodies, OrientationFollowsTheSpin)
   EXPECT_GT(lost(true, 0.5), cap_below + 0.2 * 4500);
 }
 
+// columns 6 to 9 at the start and the end of a run, whatever step that is: half the angle about a fixed axis
+TEST(FixDustDetachBodies, OrientationIsShown)
+{
+  for (const bool rotation : {true, false})
+    for (const char *inertia : {"contact", "motion"}) {
+      Deck deck;
+      space(deck);
+      deck.carrier(0, 0, 0, 0, 0, 0);
+      const double wx = 200.0, wy = -300.0, wz = 600.0, w = 700.0, dt = 1e-6;
+      spin(deck, 1, wx, wy, wz);
+      deck("fix move all nve/sphere\ntimestep 1e-6");
+      dust(deck, std::string("inertia ") + inertia + " rotation " + (rotation ? "yes" : "no"));
+      for (const int steps : {0, 1003, 1500}) {    // of neither is 16 a factor
+        deck("run " + std::to_string(steps - (steps == 1500 ? 1003 : 0)));
+        const double half = rotation ? 0.5 * w * dt * steps : 0.0;
+        const double expected[] = {std::cos(half), std::sin(half) * wx / w, std::sin(half) * wy / w,
+                                   std::sin(half) * wz / w};
+        for (int d = 0; d < 4; d++)
+          EXPECT_NEAR(deck.columns(1)[LAMMPS_NS::DetachAtom::QW + d], expected[d], 1e-12) << inertia << steps;
+      }
+    }
+}
+
 // each of two equal carriers that meet head-on moves as on a rigid wall: that has E* of one elastic side alone, twice
 // theirs
 TEST(FixDustDetachBodies, HeadOnCollisionIsTheImpactOnARigidWall)

@@ -38,6 +38,10 @@ class DetachAtom(IntEnum):
     WINDOW_MASS = 2
     CONTACT_TIME = 3
     PEAK_ACCELERATION = 4
+    QW = 5
+    QX = 6
+    QY = 7
+    QZ = 8
 
 
 @unique
