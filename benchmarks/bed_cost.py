@@ -1,11 +1,12 @@
 """What fix dust/detach costs in beds: share of the loop time in in.drum, cost per carrier from a thousand to a
-million of them, memory per carrier, and two ranks against one.
+million of them, memory per carrier, two ranks against one, and carriers of many sizes.
 
-    . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts drum,ranks,scaling] [--out FILE]
+    . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts drum,sizes,ranks,scaling] [--out FILE]
 
 Segments with and without the fix follow each other in one run, which does not depend on the fix; the fastest of each,
 the least disturbed ones, are compared. A segment with the fix starts when the fix has been there for 60 steps. Drum:
-in.drum, filled, settled and turned for a while. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a
+in.drum, filled, settled and turned for a while. Sizes: the same with carriers of 1 to 2 mm in 15 classes, and all of
+them in one. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a
 direction, no losses, contacts softened 1000 times), in which every carrier is in the same state whatever their
 number. Memory: by how much the largest resident size of the process grows with the fix. Ranks: the gas. Other work on
 the machine disturbs all this.
@@ -19,6 +20,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 from machine import description
@@ -92,16 +94,36 @@ def compare(deck: str, fix: str, unfix: str, pairs: int, steps: int, carriers: i
     }
 
 
-def drum(pairs: int = 12, steps: int = 400, warm: int = 10_000) -> dict[str, float]:
-    text = (ROOT / "lammps-inputs/in.drum").read_text()
+def drum_costs(edit: Callable[[str], str], more: tuple[str, ...] = ("",), pairs: int = 12) -> list[dict[str, float]]:
+    """in.drum, edited, for each of `more` keywords of the fix."""
+    text = edit((ROOT / "lammps-inputs/in.drum").read_text())
     fix = re.search(r"^fix +dust (.*&\n)*.*\n", text, re.MULTILINE)[0]
     fall = re.findall(r"^fix +fall .*\n", text, re.MULTILINE)[-1]
     carriers = int(re.search(r"^variable carriers +index (\d+)", text, re.MULTILINE)[1])
     text = re.sub(r"^plugin load.*\n", "", text.replace(fix, ""), flags=re.MULTILINE)
     deck = text.split('if "$(is_defined(variable,dump))"')[0]
-    deck = re.sub(r" f_dust\S*", "", deck) + f"thermo 1000000\nrun {warm}\n"
-    # gravity stands after the fix
-    return compare(deck, f"unfix fall\n{fix}{fall}", "unfix dust\n", pairs, steps, carriers)
+    deck = re.sub(r" f_dust\S*", "", deck) + "thermo 1000000\nrun 10000\n"
+    return [
+        # gravity stands after the fix
+        compare(deck, f"unfix fall\n{fix.rstrip()} {words}\n{fall}", "unfix dust\n", pairs, 400, carriers)
+        for words in more
+    ]
+
+
+def drum() -> dict[str, float]:
+    return drum_costs(lambda deck: deck)[0]
+
+
+def sizes() -> dict[str, float | dict[str, float]]:
+    def edit(deck: str) -> str:
+        deck = re.sub(r"^(variable carrier_diameter +index) \S+", r"\1 2e-3", deck, flags=re.MULTILINE)
+        deck = re.sub(r"^(variable drum +index) \S+", r"\1 0.133", deck, flags=re.MULTILINE)
+        anew = "variable size atom random(1e-3,2e-3,1)\nset type 1 diameter v_size\nset type 1 density 7700\n"
+        return re.sub(r"^(set +group all diameter.*\n)", rf"\1{anew}", deck, flags=re.MULTILINE)
+
+    many, one = drum_costs(edit, ("sizes 0.05", "sizes 1"))
+    key = "nanoseconds_per_carrier_and_step_with"
+    return {"classes of 5 %": many, "one class": one, "many_against_one": many[key] / one[key]}
 
 
 def ranks(repeats: int = 4) -> dict[str, float]:
@@ -124,14 +146,14 @@ def scaling() -> dict[str, dict[str, float]]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--parts", default="drum,ranks,scaling", help="the others keep their results in FILE")
+    parser.add_argument("--parts", default="drum,sizes,ranks,scaling", help="the others keep their results in FILE")
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
     result: dict = {**description(LMP)}
     if args.out and args.out.exists():
         result |= {k: v for k, v in json.loads(args.out.read_text()).items() if k not in result}
     for part in args.parts.split(","):
-        result[part] = {"drum": drum, "ranks": ranks, "scaling": scaling}[part]()
+        result[part] = {"drum": drum, "sizes": sizes, "ranks": ranks, "scaling": scaling}[part]()
         print(part, json.dumps(result[part]), flush=True)
         if args.out:
             args.out.write_text(json.dumps(result, indent=1) + "\n")

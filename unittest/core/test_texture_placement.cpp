@@ -328,6 +328,7 @@ TEST(TexturePlacement, SmallLayersMayBeFullerThanOnAverage)    // what chance al
     try {
       placed += place_monolayer(3.0, 1.0, 36.0 / 36.0, none, seed).grains.size() == 36;    // the formula says 34.9
     } catch (TextureError &) {
+      continue;    // as most do
     }
   }
   EXPECT_GT(placed, 5);

@@ -286,8 +286,8 @@ TEST(CreateDust, ComputeKnowsWhichCarrierHoldsAGrain)
   const LAMMPS_NS::tagint *tag = deck.tags();
   ASSERT_NE(label, nullptr);
   for (int i = 0; i < static_cast<int>(lammps_get_natoms(deck.lmp)); i++) {
-    ASSERT_EQ(label[i], tag[i] <= 3 ? 0.0 : 1.0 + (tag[i] - 4) / 225)
-        << tag[i];    // carriers are not in the group of the grains
+    const auto expected = tag[i] <= 3 ? 0 : 1 + (tag[i] - 4) / 225;    // 225 grains each
+    ASSERT_EQ(label[i], static_cast<double>(expected)) << tag[i];      // carriers are not in the group of the grains
   }
   EXPECT_EQ(tied(deck), 675.0);
   // a grain pulled off is tied to nothing, one that holds on to another grain is tied to that one's carrier

@@ -109,7 +109,8 @@ TEST(FixDustDetach, SetupCountsNoStep)
 TEST(FixDustDetach, AHundredCarriersAreAsAHundredSingleOnes)
 {
   const auto carrier = [](Deck &deck, int k) {
-    deck.carrier(-0.009 + 0.002 * (k % 10), -0.009 + 0.002 * (k / 10), START + 1e-8 * k, 0.1 * (k % 7), 0.05 * (k % 3),
+    const int row = k / 10;
+    deck.carrier(-0.009 + 0.002 * (k % 10), -0.009 + 0.002 * row, START + 1e-8 * k, 0.1 * (k % 7), 0.05 * (k % 3),
                  -0.2 * (k + 1));
   };
   Deck many;

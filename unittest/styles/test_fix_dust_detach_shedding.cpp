@@ -65,7 +65,7 @@ std::map<tagint, Atom> atoms(const Deck &deck)
     const double *p = static_cast<double **>(lammps_extract_atom(deck.lmp, name))[i];
     return Vec{p[0], p[1], p[2]};
   };
-  const int n = static_cast<int>(lammps_extract_setting(deck.lmp, "nlocal"));
+  const int n = lammps_extract_setting(deck.lmp, "nlocal");
   for (int i = 0; i < n; i++)
     all[tag[i]] = {type[i], mass[i], radius[i], vector("x", i), vector("v", i), vector("omega", i)};
   EXPECT_EQ(all.size(), static_cast<size_t>(n)) << "IDs exist twice";
