@@ -129,7 +129,7 @@ std::vector<bool> CarrierData::colliding(size_t collisions) const
 /* ---------------------------------------------------------------------- */
 
 // numbers before the orientation, and the number of words
-int CarrierData::size(int words) const { return 6 + DetachAtom::SIZE + layout() + words; }
+int CarrierData::size(int words) const { return 6 + DetachAtom::QW + layout() + words; }
 
 void CarrierData::pack(int i, Dust::Packer &to) const
 {
