@@ -72,14 +72,15 @@ def draw_carriers(axes, rows: np.ndarray):
 def save(figure, name: str) -> None:
     """As PNG with 128 colours."""
     with BytesIO() as buffer:
-        figure.savefig(buffer, format="png", dpi=100)
+        figure.savefig(buffer, format="png", dpi=150)
         image = Image.open(buffer).convert("RGB").quantize(128, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     image.save(ROOT / f"doc/images/{name}.png", optimize=True)
     plt.close(figure)
 
 
 def bar(figure, axes, carriers) -> None:
-    figure.colorbar(carriers, ax=axes, shrink=0.7, pad=0.01, label="share of its dust that a carrier has lost")
+    figure.colorbar(carriers, ax=axes, shrink=0.7, pad=0.01, label="share of its dust\nthat a carrier has lost")
+    figure.get_layout_engine().set(wspace=0.06)    # between the bar and the curve
 
 
 def curve(axes, folder: Path, words: str) -> None:
@@ -144,10 +145,11 @@ def sieve(folder: Path) -> None:
     all_frames = frames(folder)
     steps = sorted(all_frames)
     figure, axes = plt.subplots(1, 3, figsize=(12.5, 3.9), layout="constrained", width_ratios=(1, 1, 1.1))
-    for place, step in zip(axes, (steps[0], steps[30]), strict=False):
+    for letter, place, step in zip("ab", axes, (steps[0], steps[30]), strict=False):
         carriers = draw_carriers(place, all_frames[step])
         place.axhline(0, **WALL)
-        place.set(xlim=(-17, 17), ylim=(-3, 22), title=f"{(step - steps[0]) * 1.5e-3:.1f} ms after the fall")
+        place.set(xlim=(-17, 17), ylim=(-3, 22))
+        place.set_title(f"{letter}) {(step - steps[0]) * 1.5e-3:.1f} ms after the fall", loc="left")
     axes[0].plot((10, 15), (-1.5, -1.5), color="black", linewidth=2)
     axes[0].text(12.5, -2.9, "5 mm", ha="center")
     bar(figure, axes[:2], carriers)
@@ -159,6 +161,7 @@ def sieve(folder: Path) -> None:
     axes[2].set(xlabel="time after the fall, ms", ylabel="dispersion ratio", ylim=(0, 1.02))
     axes[2].grid(alpha=0.3)
     axes[2].legend(loc="lower right")
+    axes[2].set_title("c) share that each fraction has lost", loc="left")
     save(figure, "sieve")
 
 
@@ -187,9 +190,11 @@ def chute(folder: Path) -> None:
         axes[0].plot(*triangle.T, **WALL)
     axes[0].plot((100, 110), (-8, -8), color="black", linewidth=2)
     axes[0].text(105, -6.5, "10 mm", ha="center")
-    axes[0].set(xlim=(-3, 140), ylim=(-76, 12), title=f"{step * 2e-6:.2f} s")
+    axes[0].set(xlim=(-3, 140), ylim=(-76, 12))
+    axes[0].set_title(f"a) {step * 2e-6:.2f} s", loc="left")
     bar(figure, axes[0], carriers)
     curve(axes[1], folder, "time, s")
+    axes[1].set_title("b) of all carriers", loc="left")
     save(figure, "chute")
 
 
