@@ -151,11 +151,10 @@ def main() -> None:
     parser.add_argument("--parts", default="drum,sizes,ranks,scaling", help="the others keep their results in FILE")
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
-    result: dict = {**description(LMP)}
-    if args.out and args.out.exists():
-        result |= {k: v for k, v in json.loads(args.out.read_text()).items() if k not in result}
+    result: dict = json.loads(args.out.read_text()) if args.out and args.out.exists() else {}
     for part in args.parts.split(","):
-        result[part] = {"drum": drum, "sizes": sizes, "ranks": ranks, "scaling": scaling}[part]()
+        parts = {"drum": drum, "sizes": sizes, "ranks": ranks, "scaling": scaling}
+        result[part] = {**description(LMP), **parts[part]()}
         print(part, json.dumps(result[part]), flush=True)
         if args.out:
             args.out.write_text(json.dumps(result, indent=1) + "\n")
