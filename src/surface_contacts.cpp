@@ -24,11 +24,11 @@ struct Number {
   using Type = int FixSurfaceGlobal::*;
   friend Type member_of(Number);
 };
-template struct Opened<Models, &FixSurfaceGlobal::models>;
 struct Moves {
   using Type = int FixSurfaceGlobal::*;
   friend Type member_of(Moves);
 };
+template struct Opened<Models, &FixSurfaceGlobal::models>;
 template struct Opened<Number, &FixSurfaceGlobal::nmodel>;
 template struct Opened<Moves, &FixSurfaceGlobal::anymove>;
 
