@@ -299,13 +299,13 @@ void FixDustDetach::collide(int i)
   if (carriers.state[i] == FREE_FLIGHT) carriers.began[i] = steps;
   if (carriers.state[i] < 0) begin_collision(i, motion);
   Dust::Collision &collision = collisions[carriers.state[i]];
-  if (collision.step(table_of(i), motion, settings.stiffen_time * update->dt, carriers.attached[i].data(),
-                     collisions.work)) {
+  if (collision.step(table_of(i), motion, settings.stiffen_time * update->dt, carriers.attached[i], collisions.work)) {
     checks.grains_left(i, motion.acceleration, course_of(i));
     record(i);
   }
   if (!settings.by_motion) checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), table_of(i).min_hold());
-  if (settings.emit || collision.max_packed_size() > exchange_room) make_exchange_room(i);
+  const bool grown = collision.grows(table_of(i)) && collision.max_packed_size() > exchange_room;
+  if (settings.emit || grown) make_exchange_room(i);
   if (collision.at_rest()) finish_collision(i, AT_REST);
 }
 
@@ -356,8 +356,8 @@ void FixDustDetach::spin_off(int i)
   const Dust::Motion motion = motion_of(i);
   if (!table_of(i).may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
   begin_collision(i, motion);
-  if (collisions[carriers.state[i]].step(table_of(i), motion, settings.stiffen_time * update->dt,
-                                         carriers.attached[i].data(), collisions.work))
+  if (collisions[carriers.state[i]].step(table_of(i), motion, settings.stiffen_time * update->dt, carriers.attached[i],
+                                         collisions.work))
     record(i);
   collisions.give_back(carriers.state[i]);
   carriers.state[i] = FREE_FLIGHT;

@@ -70,7 +70,8 @@ void Collision::become_strong(const GrainTable &table, Workspace &work)
 
 /* ---------------------------------------------------------------------- */
 
-bool Collision::step(const GrainTable &table, const Motion &middle, double dt, uint64_t *attached, Workspace &work)
+bool Collision::step(const GrainTable &table, const Motion &middle, double dt, std::vector<uint64_t> &attached,
+                     Workspace &work)
 {
   Motion motion = middle;
   for (int d = 0; d < 3; d++) motion.spin[d] += 0.5 * dt * middle.angular_acceleration[d];
@@ -87,7 +88,7 @@ bool Collision::step(const GrainTable &table, const Motion &middle, double dt, u
     strong->state.now.turn_by(middle.spin, dt);
 
   work.losses.clear();
-  step_strong(table, motion, strength, dt, attached, work);
+  step_strong(table, motion, strength, dt, attached.data(), work);
   return !work.losses.empty();
 }
 
@@ -96,8 +97,7 @@ void Collision::add(const GrainTable &table, const Motion &motion, double size, 
   course.activity.add(size, lively);
   course.time += dt;
   for (int d = 0; d < 3; d++) course.impulse[d] += motion.acceleration[d] * dt;
-  const TangentialLaw *law = table.tangential();
-  if (!law || !law->needs_impulses) return;
+  if (!needs_impulses(table)) return;
   if (!impulses) impulses = std::make_unique<ImpulseRecord>();
   impulses->add(motion.acceleration, motion.spin, dt);
 }

@@ -92,10 +92,10 @@ class alignas(64) Collision {
 
   /*! One time step: Eq. 2 and lift-off normal
    *  \param middle    must be finite; its spin is that of the middle of the step that ends now, as a leapfrog has it
-   *  \param attached  bits of the grains; those that leave are cleared
+   *  \param attached  bits of the grains; those that leave are cleared. A weak collision does not touch them
    *  \param work      the grains that leave are appended to its list
    *  \return          true if any left */
-  bool step(const GrainTable &table, const Motion &middle, double dt, uint64_t *attached, Workspace &work);
+  bool step(const GrainTable &table, const Motion &middle, double dt, std::vector<uint64_t> &attached, Workspace &work);
 
   /*! Whether it has come to rest though the contact lasts */
   bool at_rest() const { return course.activity.at_rest(weak()); }
@@ -122,6 +122,8 @@ class alignas(64) Collision {
   // transfer to another rank and restart. The schedule is begun anew, which changes no result
   void pack(Packer &packer) const;
   int packed_size() const;
+  /*! Whether that may grow from step to step: not while it is weak, unless its law needs its course */
+  bool grows(const GrainTable &table) const { return strong || needs_impulses(table); }
   /*! At least that, and told at once */
   int max_packed_size() const
   {
@@ -161,6 +163,11 @@ class alignas(64) Collision {
     const double size2 = dot(motion.acceleration, motion.acceleration), size = std::sqrt(size2);
     const double rotation = table.max_shell() * motion.rotation_bound();
     return {size2, size, rotation, size + rotation > table.moving_force()};
+  }
+
+  static bool needs_impulses(const GrainTable &table)
+  {
+    return table.tangential() && table.tangential()->needs_impulses;
   }
 
   void become_strong(const GrainTable &table, Workspace &work);

@@ -223,7 +223,7 @@ inline Outcome by_collision(const Texture &texture, const GrainTable &table, con
     } else {
       const Vec alpha = h.alpha.empty() ? Vec{0.0, 0.0, 0.0} : h.alpha[k];
       const Motion motion = {{h.a[k].x, h.a[k].y, h.a[k].z}, {alpha.x, alpha.y, alpha.z}, {spin.x, spin.y, spin.z}};
-      collision.step(table, motion, h.dt, attached.data(), work);
+      collision.step(table, motion, h.dt, attached, work);
       spin = spin + h.dt * alpha;
     }
     for (const Detachment &d : detached) {

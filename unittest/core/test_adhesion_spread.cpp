@@ -126,7 +126,7 @@ TEST(AdhesionSpread, ALoadReleasesWhatTheLogNormalSays)
     double left = 0.0;
     for (double load : {0.3, 0.5, 0.8, 1.0, 1.25, 2.0, 3.0}) {
       const Motion motion = {{0.0, 0.0, load * HOLD}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-      collision.step(table, motion, 1.0e-9, attached.data(), work);
+      collision.step(table, motion, 1.0e-9, attached, work);
       left += work.detached.size();
       for (const Detachment &d : work.detached) EXPECT_EQ(d.mode, NORMAL);
       work.detached.clear();

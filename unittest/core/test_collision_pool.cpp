@@ -52,7 +52,7 @@ TEST(CollisionPool, StrongPartsGoToTheNextCollision)
     const int number = pool.take();
     pool[number].begin(Quaternion(), NO_SPIN);
     EXPECT_TRUE(pool[number].weak());
-    pool[number].step(table, hard, 1.0e-9, attached.data(), pool.work);
+    pool[number].step(table, hard, 1.0e-9, attached, pool.work);
     EXPECT_FALSE(pool[number].weak());
     EXPECT_GT(pool.memory_usage(), sizeof(Collision));
     EXPECT_TRUE(pool.work.spare.empty());

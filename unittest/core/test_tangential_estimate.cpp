@@ -42,7 +42,7 @@ TEST(TangentialEstimate, RearGrainsFlyOffWithWhatFrictionLeaves)
   Collision collision;
   const double spin[3] = {0.0, 0.0, 0.0};
   collision.begin(Quaternion(), spin);
-  for (const Vec &a : h.a) collision.step(table, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached.data(), work);
+  for (const Vec &a : h.a) collision.step(table, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached, work);
   detached.clear();
   ASSERT_TRUE(collision.end(table, spin, attached.data(), work));
   const double needed = std::sqrt(HOLD * (RP + RD)), dv = size(h.before + -1.0 * h.after);

@@ -38,7 +38,7 @@ std::map<int, Vec> velocities(const GrainTable &table, const History &h)
   Workspace work;
   Collision collision;
   collision.begin(Quaternion(), NO_SPIN);
-  for (const Vec &a : h.a) collision.step(table, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached.data(), work);
+  for (const Vec &a : h.a) collision.step(table, {{a.x, a.y, a.z}, {}, {}}, h.dt, attached, work);
   collision.end(table, NO_SPIN, attached.data(), work);
   std::map<int, Vec> found;
   for (const Detachment &d : work.detached)
@@ -191,8 +191,7 @@ TEST(TangentialImpulse, ACarrierThatSpinsEvenlyInAStraightImpactCarriesItsGrains
   Workspace work;
   Collision collision;
   collision.begin(Quaternion(), spin);
-  for (const Vec &a : h.a)
-    collision.step(table, {{a.x, a.y, a.z}, {}, {0.0, 0.0, 3000.0}}, h.dt, attached.data(), work);
+  for (const Vec &a : h.a) collision.step(table, {{a.x, a.y, a.z}, {}, {0.0, 0.0, 3000.0}}, h.dt, attached, work);
   work.detached.clear();
   ASSERT_TRUE(collision.end(table, spin, attached.data(), work));
   int both = 0;

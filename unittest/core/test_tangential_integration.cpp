@@ -34,11 +34,11 @@ std::map<int, Mode> by_collision(const GrainTable &table, const History &h, int 
   Collision collision;
   const Motion earlier = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}};    // a collision before this one
   collision.begin(Quaternion(), earlier.spin);
-  collision.step(table, earlier, 1.0, attached.data(), work);
+  collision.step(table, earlier, 1.0, attached, work);
   collision.begin(Quaternion(), &h.spin0.x);
   for (size_t k = 0; k <= h.a.size(); k++) {
     if (k < h.a.size())
-      collision.step(table, motion_of(h, k), h.dt, attached.data(), work);
+      collision.step(table, motion_of(h, k), h.dt, attached, work);
     else
       collision.end(table, &h.spin.back().x, attached.data(), work);
     for (const Detachment &d : work.detached) left[table.grain(d.bit)] = d.mode;
@@ -51,7 +51,7 @@ std::map<int, Mode> by_collision(const GrainTable &table, const History &h, int 
       Collision other;
       std::vector<uint64_t> all = table.all_attached();
       other.begin(Quaternion(), earlier.spin);    // one that has been used
-      other.step(table, earlier, 1.0, all.data(), work);
+      other.step(table, earlier, 1.0, all, work);
       work.detached.clear();
       Unpacker unpacker(buf.data());
       other.unpack(unpacker);
@@ -199,7 +199,7 @@ TEST(TangentialIntegration, AloneNeedsTheImpulses)
     Workspace work;
     Collision collision;
     collision.begin(Quaternion(), NO_SPIN);
-    for (size_t k = 0; k < h.a.size(); k++) collision.step(table, motion_of(h, k), h.dt, attached.data(), work);
+    for (size_t k = 0; k < h.a.size(); k++) collision.step(table, motion_of(h, k), h.dt, attached, work);
     sizes[tangential] = collision.packed_size();
   }
   EXPECT_EQ(sizes[Criteria::OFF], sizes[Criteria::ESTIMATE]);
@@ -230,7 +230,7 @@ std::map<int, Detachment> released(const GrainTable &table, const History &h, co
     axes.to_space(m.acceleration, m.acceleration);
     axes.to_space(m.angular_acceleration, m.angular_acceleration);
     axes.to_space(m.spin, m.spin);
-    collision.step(table, m, h.dt, attached.data(), work);
+    collision.step(table, m, h.dt, attached, work);
   }
   work.detached.clear();
   collision.end(table, &spin1.x, attached.data(), work);
