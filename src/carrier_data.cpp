@@ -8,6 +8,7 @@
 
 #include "atom.h"
 #include "memory.h"
+#include "update.h"
 
 #include <algorithm>
 
@@ -73,6 +74,15 @@ void CarrierData::clear(int i)
   if (angle) std::fill_n(angle[i], 3, 0.0);
   if (before) std::fill_n(before[i], motion_size, 0.0);
   std::fill_n(columns[i], static_cast<int>(DetachAtom::SIZE), 0.0);
+}
+
+// of all atoms: it costs less than to ask which are carriers
+void CarrierData::add_turn(int first, int last)
+{
+  if (first == last) return;
+  const double dt = update->dt, *omega = atom->omega[0];
+  double *turned = angle[0];
+  for (int d = 3 * first; d < 3 * last; d++) turned[d] += dt * omega[d];
 }
 
 /* ----------------------------------------------------------------------

@@ -43,6 +43,7 @@ class CarrierData : protected Pointers {
   void copy(int i, int j);
   void clear(int i);    // no carrier
 
+  void add_turn(int first, int last);    // of a step, for the atoms from first to before last
   static constexpr int TURN_EVERY = 16;
   void turn();
   Dust::Quaternion standing(int i) const;    // now

@@ -219,8 +219,6 @@ void FixDustDetach::post_force(int /*vflag*/)
   const double *const rmass = atom->rmass;
   const bool spins = settings.rotation && nlocal > 0;
   const double *torque = spins ? atom->torque[0] : nullptr, *omega = spins ? atom->omega[0] : nullptr;
-  double *turned = spins ? carriers.angle[0] : nullptr;
-  const double dt = update->dt;
   const int *const states = carriers.state;    // does not move in this loop
 
   const bool busy = collisions.any_taken();
@@ -229,8 +227,7 @@ void FixDustDetach::post_force(int /*vflag*/)
   constexpr int BLOCK = 256;    // spins that are asked for twice are still in the cache then
   for (int first = 0; first < nlocal; first += BLOCK) {
     const int last = std::min(first + BLOCK, nlocal);
-    if (spins)    // all atoms: it costs less than to ask which are carriers
-      for (int d = 3 * first; d < 3 * last; d++) turned[d] += dt * omega[d];
+    if (spins) carriers.add_turn(first, last);
     for (int i = first; i < last; i++, f += 3) {
       // collisions are in no order, and a bed has more of them than a cache: those of atoms to come are fetched now
       constexpr int AHEAD = 24;
@@ -260,6 +257,12 @@ void FixDustDetach::post_force(int /*vflag*/)
     }
   }
   if (spins && update->ntimestep % CarrierData::TURN_EVERY == 0) carriers.turn();
+  close_step();
+}
+
+// all grains that leave in this step have left
+void FixDustDetach::close_step()
+{
   if (update->ntimestep == output->next) carriers.show_standing();
   if (rows.is_open() && update->ntimestep % settings.every == 0) close_window();
   if (settings.lose_mass) tell_ghosts();

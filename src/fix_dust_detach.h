@@ -107,6 +107,7 @@ class FixDustDetach : public Fix {
   // detachments
   DetachmentRows rows;
   void record(int);
+  void close_step();
   void close_window();
   void show_rows();
 

@@ -7,7 +7,6 @@
 #include "fix_dust_detach.h"
 
 #include "atom.h"
-#include "output.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
@@ -24,8 +23,7 @@ void FixDustDetach::note_contacts()
   touched.resize(nlocal);
   for (int i = 0; i < nlocal; i++) touched[i] = f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0 ? 1 : 0;
   if (!settings.rotation) return;
-  for (int i = 0; i < nlocal; i++)
-    for (int d = 0; d < 3; d++) carriers.angle[i][d] += update->dt * atom->omega[i][d];
+  carriers.add_turn(0, nlocal);
   if (update->ntimestep % CarrierData::TURN_EVERY == 0) carriers.turn();
 }
 
@@ -39,9 +37,7 @@ void FixDustDetach::end_of_step()
     if ((atom->mask[i] & groupbit) && carriers.state[i] != NO_CARRIER) follow(i);
     motions.remember(i, carriers.before[i]);    // what it has lost may have changed its velocity
   }
-  if (update->ntimestep == output->next) carriers.show_standing();
-  if (rows.is_open() && update->ntimestep % settings.every == 0) close_window();
-  if (settings.lose_mass) tell_ghosts();
+  close_step();
 }
 
 /* ----------------------------------------------------------------------
