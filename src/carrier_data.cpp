@@ -14,10 +14,10 @@
 
 using namespace LAMMPS_NS;
 
-CarrierData::CarrierData(LAMMPS *_lmp, bool rotation, bool orientations, int motion) :
+CarrierData::CarrierData(LAMMPS *_lmp, bool rotation, bool orientations, int motion, bool meet) :
     Pointers(_lmp), state(nullptr), coat(nullptr), radius(nullptr), orientation(nullptr), angle(nullptr),
     window_mass(nullptr), before(nullptr), began(nullptr), columns(nullptr), angle_used(rotation),
-    orientation_used(orientations), motion_size(motion)
+    orientation_used(orientations), meet_used(meet), motion_size(motion)
 {
 }
 
@@ -48,6 +48,7 @@ void CarrierData::grow(int nmax)
   if (orientation_used) memory->grow(orientation, nmax, "dust/detach:orientation");
   if (angle_used) memory->grow(angle, nmax, 3, "dust/detach:angle");
   if (motion_size) memory->grow(before, nmax, motion_size, "dust/detach:before");
+  if (meet_used) together.resize(nmax);
 }
 
 void CarrierData::copy(int i, int j)
@@ -62,6 +63,7 @@ void CarrierData::copy(int i, int j)
   if (orientation) orientation[j] = orientation[i];
   if (angle) std::copy_n(angle[i], 3, angle[j]);
   if (before) std::copy_n(before[i], motion_size, before[j]);
+  if (meet_used && i != j) together[j] = std::move(together[i]);    // an atom is copied where it moves to only
 }
 
 void CarrierData::clear(int i)
@@ -73,6 +75,7 @@ void CarrierData::clear(int i)
   window_mass[i] = began[i] = 0.0;
   if (angle) std::fill_n(angle[i], 3, 0.0);
   if (before) std::fill_n(before[i], motion_size, 0.0);
+  if (meet_used) together[i].reset();
   std::fill_n(columns[i], static_cast<int>(DetachAtom::SIZE), 0.0);
 }
 
@@ -139,7 +142,7 @@ std::vector<bool> CarrierData::colliding(size_t collisions) const
 /* ---------------------------------------------------------------------- */
 
 // numbers before the orientation, and the number of words
-int CarrierData::size(int words) const { return 6 + DetachAtom::QW + layout() + words; }
+int CarrierData::size(int words) const { return 6 + DetachAtom::QW + layout() % 100 + words; }
 
 void CarrierData::pack(int i, Dust::Packer &to) const
 {

@@ -7,11 +7,13 @@
 
 #include "pointers.h"
 
+#include "core/entrainment.h"
 #include "core/pack.h"
 #include "core/quaternion.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -32,9 +34,12 @@ class CarrierData : protected Pointers {
   double **before;                  // for inertia from motion: at the end of the last step
   double *began;                    // step in which the present contact did
   double **columns;                 // of the per-atom array
+  // grains that meet: of carriers whose grains are followed after a collision
+  std::vector<std::unique_ptr<Dust::Entrainment>> together;
 
-  // rotation: carriers turn; orientations: they do, or do not start all alike; motion: numbers of before[i]
-  CarrierData(class LAMMPS *, bool rotation, bool orientations, int motion);
+  // rotation: carriers turn; orientations: they do, or do not start all alike; motion: numbers of before[i]; meet: grains
+  // meet each other
+  CarrierData(class LAMMPS *, bool rotation, bool orientations, int motion, bool meet);
   ~CarrierData() override;
   CarrierData(const CarrierData &) = delete;
   CarrierData &operator=(const CarrierData &) = delete;
@@ -55,14 +60,15 @@ class CarrierData : protected Pointers {
 
   // of a carrier; the number of its collision does not travel, 0 stands for it
   int size(int words) const;    // with so many words of attached bits
-  int layout() const { return motion_size + (angle_used ? 7 : orientation_used ? 4 : 0); }    // tells which are used
+  // tells which are used
+  int layout() const { return 100 * meet_used + motion_size + (angle_used ? 7 : orientation_used ? 4 : 0); }
   void pack(int i, Dust::Packer &) const;
   void unpack(int i, Dust::Unpacker &);
 
   double memory_usage() const;
 
  private:
-  bool angle_used, orientation_used;
+  bool angle_used, orientation_used, meet_used;
   int motion_size;
 };
 

@@ -27,6 +27,7 @@ enum {
   SLIDING,
   ROLLING,
   NO_ROOM,
+  KNOCKED,
   SIZE
 };
 }

@@ -18,7 +18,8 @@ static constexpr double UNSET = -1.0;
 /* ---------------------------------------------------------------------- */
 
 DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
-    DustOptions(_lmp, "Fix dust/detach"), friction(UNSET), rolling(0.15), damping(UNSET), every(1), keep_rows(true),
+    DustOptions(_lmp, "Fix dust/detach"), friction(UNSET), rolling(0.15), damping(UNSET), cohesion(UNSET),
+    meet_softening(UNSET), meet_step(UNSET), every(1), keep_rows(true),
     rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), by_motion(false), lose_mass(false),
     emit(0), weightless(false)
 {
@@ -54,6 +55,10 @@ std::vector<Keyword> DetachSettings::keywords()
          criteria.tangential = LAWS[words.one_of({"impulse", "estimate", "integrate", "frictionless", "off"})];
        }},
       {"criteria", [this](Keywords &words) { criteria.ibrahim = words.one_of({"liftoff", "ibrahim"}) == 1; }},
+      {"meet", [this](Keywords &words) { criteria.meet = words.yes_or_no(); }},
+      {"cohesion", [this](Keywords &words) { cohesion = words.number(Range::above(0.0)); }},
+      {"meet_softening", [this](Keywords &words) { meet_softening = words.number(Range::from_to(1.0, 1000.0)); }},
+      {"meet_step", [this](Keywords &words) { meet_step = words.number(Range::above(0.0)); }},
       {"counts", [this](Keywords &words) { criteria.count = words.yes_or_no(); }},
       {"every", [this](Keywords &words) { every = words.whole_number(1, MAXSMALLINT); }},
       {"rows", [this](Keywords &words) { keep_rows = words.yes_or_no(); }},
@@ -70,6 +75,24 @@ std::vector<Keyword> DetachSettings::keywords()
   };
   table.insert(table.end(), own.begin(), own.end());
   return table;
+}
+
+void DetachSettings::check_meeting()
+{
+  constexpr double REFERENCE_COHESION = 10.1 / 14.633, REFERENCE_SOFTENING = 100.0;
+  if (!criteria.meet) {
+    for (const auto &[value, word] : {std::pair(cohesion, "cohesion"), std::pair(meet_softening, "meet_softening"),
+                                      std::pair(meet_step, "meet_step")})
+      if (value != UNSET) error->all(FLERR, "{} {} needs meet yes: else no grain meets another", command, word);
+    return;
+  }
+  if (criteria.tangential != Dust::Criteria::INTEGRATE)
+    error->all(FLERR, "{} meet yes needs tangential integrate: grains that meet are followed", command);
+  if (criteria.ibrahim)
+    error->all(FLERR, "{} meet yes needs criteria liftoff: grains that only slide or roll have not left", command);
+  if (cohesion == UNSET) cohesion = REFERENCE_COHESION;
+  if (meet_softening == UNSET) meet_softening = REFERENCE_SOFTENING;
+  if (meet_step == UNSET) meet_step = 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -91,6 +114,7 @@ void DetachSettings::check(int igroup)
     error->all(FLERR,
                "{} damping needs tangential impulse or integrate: no other law knows how a grain's contact rings",
                command);
+  check_meeting();
   if (by_motion && stiffen != 1.0)
     error->all(FLERR, "{} stiffen {} needs inertia contact: a motion does not tell which part contacts have", command,
                stiffen);

@@ -23,6 +23,8 @@ class DetachSettings : public DustOptions {
   Dust::Criteria criteria;
   double friction, rolling;
   double damping;    // below 0: none, the normal motion is quasi-static
+  // of grains that meet: adhesion among them over that to the carrier; numbers of the following, 0: by default
+  double cohesion, meet_softening, meet_step;
   int every;         // steps of a window
   bool keep_rows, rotation;
   double stiffen;                               // by which factor the deck's contacts are softer than the real ones
@@ -38,6 +40,7 @@ class DetachSettings : public DustOptions {
 
   std::vector<Keyword> keywords();
   void check(int igroup);
+  void check_meeting();
 };
 
 }    // namespace LAMMPS_NS

@@ -4,6 +4,8 @@
 
 #include "dust_coat.h"
 
+#include "core/jkr.h"
+
 #include "detach_settings.h"
 #include "dust_gather.h"
 
@@ -84,8 +86,15 @@ DustCoat DustCoats::make(double key, double radius) const
   coat.key = key;
   coat.texture = settings.texture(radius);
   coat.radius = coat.texture.carrier_radius;
-  const Dust::Material material = {settings.density,  settings.surface_energy, settings.modulus(),
-                                   settings.friction, settings.rolling,        settings.damping};
+  Dust::Material material = {settings.density,  settings.surface_energy, settings.modulus(),
+                             settings.friction, settings.rolling,        settings.damping};
+  if (settings.criteria.meet) {
+    const double modulus = settings.elastic[0], poisson = settings.elastic[1];
+    material.grain_modulus = Dust::combined_modulus(modulus, poisson, modulus, poisson);
+    material.cohesion = settings.cohesion;
+    material.softening = settings.meet_softening;
+    material.step = settings.meet_step;
+  }
   coat.table = std::make_unique<Dust::GrainTable>(coat.texture, material, settings.criteria);
   coat.mass = empty() ? 1.0 : coat.table->mean_mass() / unit_mass();
   coat.checksum = 0.0;

@@ -25,14 +25,14 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double RESTART_FORMAT = 2.0;
+static constexpr double RESTART_FORMAT = 3.0;
 
 /* ---------------------------------------------------------------------- */
 
 FixDustDetach::FixDustDetach(LAMMPS *_lmp, int narg, char **arg) :
     Fix(_lmp, narg, arg), settings(lmp, igroup, narg, arg), checks(lmp, this, settings), coats(lmp, this, settings),
     carriers(lmp, settings.rotation, settings.rotation || !settings.same_orientation(),
-             settings.by_motion ? CarrierMotion::SIZE : 0),
+             settings.by_motion ? CarrierMotion::SIZE : 0, settings.criteria.meet),
     steps(0.0), newcomers(true), motions(lmp), mine{}, shedding(lmp, this, settings.emit), exchange_room(0)
 {
   collisions.work.locate = settings.keep_rows || settings.lose_mass;
@@ -213,6 +213,7 @@ void FixDustDetach::post_force(int /*vflag*/)
 {
   checks.look_at_sizes(carriers.radius);
   if (settings.by_motion) return note_contacts();
+  if (settings.criteria.meet) follow_grains();
   const int *const mask = atom->mask;
   const int nlocal = atom->nlocal;
   const double *f = nlocal ? atom->f[0] : nullptr;
@@ -304,8 +305,12 @@ void FixDustDetach::collide(int i)
   Dust::Collision &collision = collisions[carriers.state[i]];
   if (collision.step(table_of(i), motion, settings.stiffen_time * update->dt, carriers.attached[i], collisions.work)) {
     checks.grains_left(i, motion.acceleration, course_of(i));
-    record(i);
+    if (settings.criteria.meet)
+      collisions.work.detached.clear();    // the end of the collision tells
+    else
+      record(i);
   }
+  if (settings.criteria.meet && carriers.together[i] && !collision.weak()) stop_following(i);
   if (!settings.by_motion) checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), table_of(i).min_hold());
   const bool grown = collision.grows(table_of(i)) && collision.max_packed_size() > exchange_room;
   if (settings.emit || grown) make_exchange_room(i);
@@ -332,13 +337,15 @@ void FixDustDetach::finish_collision(int i, int next)
 {
   Dust::Collision &collision = collisions[carriers.state[i]];
   const Dust::Motion motion = motion_of(i);
-  if (collision.end(table_of(i), motion.spin, carriers.attached[i].data(), collisions.work)) record(i);
+  if (collision.end(table_of(i), motion.spin, carriers.attached[i].data(), collisions.work) && !settings.criteria.meet)
+    record(i);
   array_atom[i][DetachAtom::PEAK_ACCELERATION] = collision.peak_acceleration();
   checks.collision_over(i, next == FREE_FLIGHT ? steps - carriers.began[i] : 0.0, course_of(i));
   mine.collisions += 1.0;
-  mine.north += collision.lost_north(table_of(i), carriers.attached[i].data());
+  if (!settings.criteria.meet) mine.north += collision.lost_north(table_of(i), carriers.attached[i].data());
   mine.sliding += collision.grains_that(Dust::SLIDING, table_of(i), carriers.attached[i].data());
   mine.rolling += collision.grains_that(Dust::ROLLING, table_of(i), carriers.attached[i].data());
+  if (settings.criteria.meet && !collision.weak()) begin_following(i, motion.spin);
   collisions.give_back(carriers.state[i]);
   carriers.state[i] = next;
   if (next == FREE_FLIGHT) leave_contact(i);
@@ -366,49 +373,7 @@ void FixDustDetach::spin_off(int i)
   carriers.state[i] = FREE_FLIGHT;
 }
 
-/* ----------------------------------------------------------------------
-   the grains that have just left carrier i
-------------------------------------------------------------------------- */
-
-void FixDustDetach::record(int i)
-{
-  // v is half a step behind, but not at the start of a run or the end of a step
-  const double half_kick = update->setupflag || settings.by_motion ? 0.0 : 0.5 * update->dt / atom->rmass[i];
-  const double *x = atom->x[i], *v = atom->v[i], *f = atom->f[i], *spin = atom->omega[i];
-  const double velocity[3] = {v[0] + half_kick * f[0], v[1] + half_kick * f[1], v[2] + half_kick * f[2]};
-  const DustCoat &coat = coats[carriers.coat[i]];
-  double lost = 0.0, lost_mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
-  for (const Dust::Detachment &d : collisions.work.detached) {
-    mine.modes[d.mode] += 1.0;
-    lost += coat.table->weight(d.bit);
-    if (!collisions.work.locate) continue;
-    const int number = coat.table->grain(d.bit);
-    const Dust::Grain &grain = coat.texture.grains[number];
-    const double distance = carriers.radius[i] + grain.radius, *n = d.direction, *w = d.velocity;
-    const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
-    const double before = d.before_end / settings.stiffen_time;    // when it left: as the carrier moved then
-    DustShedding::Grain left = {number + 1.0, mass, grain.radius, shedding.now() - before, {}, {}, {}};
-    for (int k = 0; k < 3; k++) {
-      left.x[k] = x[k] - before * velocity[k] + d.carrier_place[k] / settings.stiffen_time + distance * n[k];
-      left.v[k] = velocity[k] + d.carrier_velocity[k] + w[k];
-      left.spin[k] = spin[k];
-      momentum[k] += mass * left.v[k];
-    }
-    lost_mass += mass;
-    if (settings.keep_rows)
-      rows.add({double(update->ntimestep) - std::round(before / update->dt), double(atom->tag[i]), left.number,
-                d.mode + 1.0, 2.0 * grain.radius, left.x[0], left.x[1], left.x[2], left.v[0], left.v[1], left.v[2],
-                2.0 * coat.radius});
-    if (settings.emit) shedding.wait(i, left);
-  }
-  if (settings.lose_mass) shedding.take_off(i, lost_mass, momentum);
-  mine.weight += lost * coat.mass;
-  array_atom[i][DetachAtom::ATTACHED] -= double(collisions.work.detached.size());
-  array_atom[i][DetachAtom::MASS] += lost * coat.table->mean_mass();
-  carriers.window_mass[i] += lost * coat.table->mean_mass();
-  collisions.work.detached.clear();
-  rows.open();
-}
+/* ---------------------------------------------------------------------- */
 
 void FixDustDetach::close_window()
 {
@@ -458,6 +423,7 @@ double FixDustDetach::compute_vector(int n)
     case TANGENTIAL: return t.modes[Dust::TANGENTIAL];
     case SOUTH: return t.detached() - compute_vector(NORTH);
     case NORTH:
+      if (settings.criteria.meet) return t.north;
       return t.north + sum_under_way([&](const Dust::Collision &c, int i) {
                return c.lost_north(table_of(i), carriers.attached[i].data());    // with the velocity so far
              });
@@ -468,6 +434,7 @@ double FixDustDetach::compute_vector(int n)
     case MET_ROLLING: return t.rolling + met(Dust::ROLLING);
     case SLIDING: return t.modes[Dust::SLIDING];
     case ROLLING: return t.modes[Dust::ROLLING];
+    case KNOCKED: return t.modes[Dust::KNOCKED];
     default: return t.no_room;
   }
 }
@@ -568,6 +535,7 @@ void FixDustDetach::make_exchange_room(int i)
 {
   Dust::Packer counter;
   shedding.pack(i, false, counter);
+  pack_following(i, counter);
   if (carriers.state[i] >= 0) collisions[carriers.state[i]].pack(counter);
   const int needed = counter.size();
   if (needed <= exchange_room) return;
@@ -598,6 +566,7 @@ void FixDustDetach::pack(int i, bool for_file, Dust::Packer &to) const
   to.put(CARRIER);
   carriers.pack(i, to);
   shedding.pack(i, for_file, to);
+  pack_following(i, to);
   if (carriers.state[i] >= 0) collisions[carriers.state[i]].pack(to);
 }
 
@@ -614,6 +583,7 @@ void FixDustDetach::unpack(int i, const double *buf)
   if (carriers.coat[i] >= coats.size()) error->one(FLERR, "Fix dust/detach texture is not the one of the restart file");
   rows.open();
   shedding.unpack(i, from);
+  unpack_following(i, from);
   if (carriers.state[i] == 0) {
     carriers.state[i] = collisions.take();
     collisions[carriers.state[i]].unpack(from);
@@ -667,7 +637,7 @@ void FixDustDetach::restart(char *buf)
   const bool any = DustCoats::any_in(p);
   p = coats.restore(p);
   if (any && layout != carriers.layout())
-    error->all(FLERR, "Fix dust/detach rotation, orientation or inertia is not that of the restart file");
+    error->all(FLERR, "Fix dust/detach rotation, orientation, inertia or meet is not that of the restart file");
   if (any && lost_mass != double(settings.lose_mass))
     error->all(FLERR, "Fix dust/detach keyword mass is not that of the restart file: {}",
                lost_mass != 0.0 ? "yes" : "no");

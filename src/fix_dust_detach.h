@@ -104,9 +104,28 @@ class FixDustDetach : public Fix {
   double attached_grains() const;
   template <typename Question> double sum_under_way(Question) const;
 
+  // grains that meet: followed together after a collision
+  void begin_following(int, const double *);
+  void follow_grains();
+  void stop_following(int);
+  void pack_following(int, Dust::Packer &) const;
+  void unpack_following(int, Dust::Unpacker &);
+
   // detachments
   DetachmentRows rows;
+  struct Carried {
+    double x[3], v[3];
+  };
+  Carried now(int) const;
+  struct Loss {
+    double grains, weight, mass, momentum[3];
+  };
+  void add(Loss &, int i, int bit, Dust::Mode, double sign, const double *velocity);
+  void book(int, const Loss &);
+  DustShedding::Grain as_it_left(int, const Carried &, const Dust::Detachment &, double before, double height) const;
   void record(int);
+  void record_together(int);
+  void add_row(int, const DustShedding::Grain &, Dust::Mode, double before);
   void close_step();
   void close_window();
   void show_rows();

@@ -33,6 +33,7 @@ void FixDustDetach::note_contacts()
 
 void FixDustDetach::end_of_step()
 {
+  if (settings.criteria.meet) follow_grains();
   for (int i = 0; i < atom->nlocal; i++) {
     if ((atom->mask[i] & groupbit) && carriers.state[i] != NO_CARRIER) follow(i);
     motions.remember(i, carriers.before[i]);    // what it has lost may have changed its velocity

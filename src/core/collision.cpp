@@ -4,6 +4,7 @@
 
 #include "collision.h"
 
+#include "entrainment.h"
 #include "geometry.h"
 #include "patch_bits.h"
 #include "retrospect.h"
@@ -280,6 +281,22 @@ bool Collision::end(const GrainTable &table, const double *spin, uint64_t *attac
   for (const Release &release : work.released) let_go(table, release, attached, work);
   if (work.locate && impulses) locate_in_past(work.detached, first);
   return !work.released.empty();
+}
+
+void Collision::hand_over(const GrainTable &table, const double *spin, const std::vector<Detachment> &late,
+                          uint64_t *attached, Entrainment &together) const
+{
+  // those that have lifted off before, where they sat
+  std::vector<Detachment> alone;
+  std::vector<uint64_t> start = strong->start;    // empty if none has
+  if (start.empty()) start.assign(attached, attached + table.words());
+  for (size_t word = 0; word < start.size(); word++)
+    each_bit(start[word] & ~attached[word], [&](int k) {
+      alone.push_back({static_cast<int>(word) * PATCH + k, NORMAL, {}, {}, 0.0, {}, {}});
+    });
+  alone.insert(alone.end(), late.begin(), late.end());
+  std::copy(start.begin(), start.end(), attached);
+  together.follow(past_at(spin), course.frame, start.data(), alone);
 }
 
 // the velocities and the time are those of the last lively step if it has come to rest

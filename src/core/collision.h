@@ -23,6 +23,8 @@
 
 namespace Dust {
 
+class Entrainment;
+
 /*! One grain that has just left */
 struct Detachment {
   int bit;
@@ -103,6 +105,13 @@ class alignas(64) Collision {
   /*! Lift-off tangential, at the first step without contact force or at rest, by the law of the table's criteria
    *  \param spin  after the contact */
   bool end(const GrainTable &table, const double *spin, uint64_t *attached, Workspace &work);
+
+  /*! After end(), for grains that meet: hands them to those who follow them together, from the first contact on. All that
+   *  were attached then are so again in `attached`
+   *  \param spin  after the contact
+   *  \param late  what end() has let go */
+  void hand_over(const GrainTable &table, const double *spin, const std::vector<Detachment> &late, uint64_t *attached,
+                 Entrainment &together) const;
 
   /*! Grains lost since begin() on the north, n.(velocity - velocity before contact) > 0; before the end with the
    *  velocity so far */

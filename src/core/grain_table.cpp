@@ -91,6 +91,11 @@ void GrainTable::fill_sites(const Texture &texture)
     site.weight = mass_of(g) / mass;
     site.grain = order[bit];
   }
+  if (matter.step > 0.0) return;
+  // half of the time sqrt(m/k0) of a grain of mean mass
+  const double radius = std::cbrt(mass / (4.0 / 3.0 * PI * matter.density)), r12 = effective_radius(rp, radius);
+  const double a0 = equilibrium_contact_radius(matter.gamma, r12, matter.modulus);
+  matter.step = 0.5 * std::sqrt(mass / (1.2 * matter.modulus * a0));
 }
 
 /* ---------------------------------------------------------------------- */

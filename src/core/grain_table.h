@@ -25,6 +25,9 @@ struct Material {
   double rolling = 0.15;    //!< theta_crit; IMPULSE and INTEGRATE use it
   //! damping ratio of the contact; these two then let grains ring (normal_motion.h), below 0 not
   double damping = -1.0;
+  // for grains that meet (entrainment.h): surface energy of two grains over gamma, their combined modulus, how much
+  // softer it is taken, and the time step, by default (0) half of sqrt(m/k0) of a grain of the mean mass
+  double cohesion = 0.0, grain_modulus = 0.0, softening = 1.0, step = 0.0;
 };
 
 /*! One texture made ready for evaluation: what each grain needs to leave. Shared by all carriers, never changed.

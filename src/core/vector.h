@@ -1,0 +1,26 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_VECTOR_H
+#define DUST_CORE_VECTOR_H
+
+namespace Dust {
+
+/*! A vector by value, for loops over many grains that the compiler is to turn into vector instructions */
+struct Vector {
+  double x, y, z;
+};
+
+inline Vector operator+(const Vector &a, const Vector &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(const Vector &a, const Vector &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(double c, const Vector &a) { return {c * a.x, c * a.y, c * a.z}; }
+inline double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector cross(const Vector &a, const Vector &b)
+{
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+}    // namespace Dust
+
+#endif
