@@ -8,8 +8,9 @@ file(GLOB DUST_STYLE_SOURCES CONFIGURE_DEPENDS "${DUST_SOURCE_DIR}/*.cpp")
 set(DUST_WARNINGS -Wall -Wextra -Wshadow)    # .ci/check allows none, of g++ and of clang++
 set_source_files_properties(${DUST_CORE_SOURCES} ${DUST_STYLE_SOURCES} PROPERTIES COMPILE_OPTIONS "${DUST_WARNINGS}")
 # changes no result, but a square root that may set errno costs a branch, and keeps the compiler from working on several
-# grains at once
-set_property(SOURCE ${DUST_CORE_SOURCES} APPEND PROPERTY COMPILE_OPTIONS -fno-math-errno -fno-trapping-math)
+# grains at once; no product and sum in one instruction, so that processors with such instructions give the same bits
+set_property(SOURCE ${DUST_CORE_SOURCES} APPEND PROPERTY COMPILE_OPTIONS -fno-math-errno -fno-trapping-math
+  -ffp-contract=off)
 foreach(kind gran_sub_mod fix compute command)
   set(pattern ${kind})
   if(kind STREQUAL "command")

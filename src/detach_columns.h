@@ -28,6 +28,7 @@ enum {
   ROLLING,
   NO_ROOM,
   KNOCKED,
+  FOLLOWED,
   SIZE
 };
 }

@@ -435,6 +435,7 @@ double FixDustDetach::compute_vector(int n)
     case SLIDING: return t.modes[Dust::SLIDING];
     case ROLLING: return t.modes[Dust::ROLLING];
     case KNOCKED: return t.modes[Dust::KNOCKED];
+    case FOLLOWED: return followed_carriers();
     default: return t.no_room;
   }
 }

@@ -108,6 +108,7 @@ class FixDustDetach : public Fix {
   void begin_following(int, const double *);
   void follow_grains();
   void stop_following(int);
+  double followed_carriers() const;
   void pack_following(int, Dust::Packer &) const;
   void unpack_following(int, Dust::Unpacker &);
 

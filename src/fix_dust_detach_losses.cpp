@@ -181,6 +181,15 @@ void FixDustDetach::stop_following(int i)
   carriers.together[i].reset();
 }
 
+double FixDustDetach::followed_carriers() const
+{
+  double number = 0.0;
+  if (settings.criteria.meet)
+    for (int i = 0; i < atom->nlocal; i++) number += carriers.together[i] != nullptr;
+  MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_SUM, world);
+  return number;
+}
+
 void FixDustDetach::pack_following(int i, Dust::Packer &to) const
 {
   if (!settings.criteria.meet) return;

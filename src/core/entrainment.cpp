@@ -121,8 +121,11 @@ void Entrainment::look_who_is_released()
   grains.find_flying(flying);
   for (int bit : flying) linked[bit] = 0;
   link();
+  changing.clear();
   for (int bit : flying)
-    if (released[bit] == linked[bit]) change(bit, !linked[bit]);
+    if (released[bit] == linked[bit]) changing.push_back(bit);
+  std::sort(changing.begin(), changing.end());    // sums must not depend on how grains are put side by side
+  for (int bit : changing) change(bit, !linked[bit]);
   const auto is_over = [this](Moment &moment) {
     const int bit = moment.departure.left.bit;
     if (released[bit] && grains.held(bit)) change(bit, false);    // back on the carrier

@@ -92,7 +92,7 @@ class Entrainment {
   std::vector<Moment> moments;    // in the order in which they were released
 
   // of the present step
-  std::vector<int> flying;
+  std::vector<int> flying, changing;
   std::vector<char> linked;    // flying grains: whether others hold them to the carrier
   // of the collision, as long as it is followed
   const Retrospect *past_motion;

@@ -10,15 +10,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 
 using namespace Dust;
 
-// the same for processors with longer vectors, which give the same bits
+// the same for processors with longer vectors, which give the same bits; all that the loop over grains calls is inlined
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__)
-#define DUST_VECTORS __attribute__((target_clones("avx2", "default")))
+#define DUST_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define DUST_VECTORS
 #endif
+#define DUST_INLINE __attribute__((always_inline))
 
 namespace {
 
@@ -41,19 +44,23 @@ struct Step {
 };
 
 // yes and no are 1 and 0, and one of two is picked by sums: the compiler makes branches of questions, but no vectors
-inline double pick(double first, double a, double b) { return first * a + (1.0 - first) * b; }
-inline Vector pick(double first, const Vector &a, const Vector &b) { return first * a + (1.0 - first) * b; }
-inline double is_below(double a, double b) { return a < b ? 1.0 : 0.0; }
+DUST_INLINE inline double pick(double first, double a, double b) { return first * a + (1.0 - first) * b; }
+DUST_INLINE inline Vector pick(double first, const Vector &a, const Vector &b) { return first * a + (1.0 - first) * b; }
+DUST_INLINE inline double is_below(double a, double b) { return a < b ? 1.0 : 0.0; }
 
 // y at an overlap in delta_c: a step of y^4 = D/(2 6^(1/3)) + 2/3 y from the last one, and one of Newton's
-inline double follow_branch(double overlap, double y)
+struct Branch {
+  double y, slope;    // dF/dD in F_c, delta_c
+};
+DUST_INLINE inline Branch follow_branch(double overlap, double y)
 {
   const double fourth = overlap / (2.0 * ROOT_6) + 2.0 / 3.0 * y;
   y = std::sqrt(std::sqrt(fourth > 0.0 ? fourth : 0.0));
   y = y > MIN_Y ? y : MIN_Y;
-  const double y3 = y * y * y;
-  y -= ((2.0 * y3 - 4.0 / 3.0) * y - overlap / ROOT_6) / (8.0 * y3 - 4.0 / 3.0);
-  return y > MIN_Y ? y : MIN_Y;
+  const double y3 = y * y * y, inv = 1.0 / (8.0 * y3 - 4.0 / 3.0);
+  y -= ((2.0 * y3 - 4.0 / 3.0) * y - overlap / ROOT_6) * inv;
+  y = y > MIN_Y ? y : MIN_Y;
+  return {y, (24.0 * y3 - 12.0) * y * y / ROOT_6 * inv};
 }
 
 struct Contact {
@@ -63,12 +70,13 @@ struct Contact {
 };
 
 // outward: all that pulls along n, but for the contact itself
-inline Contact normal_motion(State &s, const Fixed &g, const Step &step, double outward, double vn)
+DUST_INLINE inline Contact normal_motion(State &s, const Fixed &g, const Step &step, double outward, double vn)
 {
-  const double y = follow_branch(-s.gap * g.inv_breaking_gap, s.y), y2 = y * y, y3 = y2 * y;
+  const Branch branch = follow_branch(-s.gap * g.inv_breaking_gap, s.y);
+  const double y = branch.y, y2 = y * y, y3 = y2 * y;
   const double force = 4.0 * g.hold * y3 * (y3 - 1.0), drag = g.drag * y2;
-  const double slope = g.hold * g.inv_breaking_gap * (24.0 * y3 - 12.0) * y2 / (ROOT_6 * (8.0 * y3 - 4.0 / 3.0));
-  const double stiffness = slope > 0.0 ? slope : 0.0, h = step.h;
+  const double slope = branch.slope > 0.0 ? branch.slope : 0.0;
+  const double stiffness = g.hold * g.inv_breaking_gap * slope, h = step.h;
   s.y = pick(s.held, y, NEW_NECK);
   const double dv = h * (outward + s.held * (force - drag * vn)) /
       (1.0 + s.held * (0.5 * h * drag + 0.25 * h * h * stiffness));
@@ -76,7 +84,7 @@ inline Contact normal_motion(State &s, const Fixed &g, const Step &step, double 
 }
 
 // all of v and Omega: to the end of the step
-inline void kick(State &s, const Fixed &g, const Step &step, double shell)
+DUST_INLINE inline void kick(State &s, const Fixed &g, const Step &step, double shell)
 {
   const Vector n = s.n, r = shell * n;
   const Vector t = s.push - step.a - cross(step.alpha, r) - cross(step.omega, cross(step.omega, r) + 2.0 * s.v);
@@ -94,7 +102,7 @@ inline void kick(State &s, const Fixed &g, const Step &step, double shell)
 }
 
 // to the middle of the next step: held grains along the surface, others straight on
-inline void drift(State &s, const Fixed &g, const Step &step, double shell)
+DUST_INLINE inline void drift(State &s, const Fixed &g, const Step &step, double shell)
 {
   const Vector n = s.n;
   const double vn = dot(s.v, n), time = step.h;
@@ -115,7 +123,7 @@ inline void drift(State &s, const Fixed &g, const Step &step, double shell)
 }
 
 // whether a grain only rocks on its pivot, and hardly swings in its contact
-inline double is_calm(const State &s, const Fixed &g, const Step &step)
+DUST_INLINE inline double is_calm(const State &s, const Fixed &g, const Step &step)
 {
   const double y3 = s.y * s.y * s.y, rocking = 5.0 / 7.0 * g.rolling * y3 * g.radius;
   const double vn = dot(s.v, s.n);
@@ -132,24 +140,26 @@ inline double is_calm(const State &s, const Fixed &g, const Step &step)
 
 GrainLanes::GrainLanes(const GrainTable &table, double zeta) :
     count(table.grains()), friction(table.material().friction), theta_crit(table.material().rolling),
-    blocks((count + WIDTH - 1) / WIDTH), places(4 * blocks.size() * WIDTH)
+    blocks((count + WIDTH - 1) / WIDTH), slots(blocks.size() * WIDTH), places(4 * slots.size())
 {
+  std::iota(slots.begin(), slots.end(), 0);
+  bits = slots;
   const double rp = table.carrier_radius(), density = table.material().density;
-  for (int bit = 0; bit < static_cast<int>(blocks.size()) * WIDTH; bit++) {
+  for (int bit = 0; bit < static_cast<int>(slots.size()); bit++) {
     const GrainTable::Site &site = table.site(std::min(bit, count - 1));    // the last block is filled up
     Block &b = blocks[bit / WIDTH];
     const int i = bit % WIDTH;
     const double radius = site.shell - rp, r12 = effective_radius(rp, radius), a0 = site.lever * radius;
-    const double mass = 4.0 / 3.0 * PI * radius * radius * radius * density;
+    const double mass = 4.0 / 3.0 * PI * radius * radius * radius * density, gap = breaking_gap(a0, r12);
     b.hold[i] = site.hold;
-    b.inv_breaking_gap[i] = 1.0 / breaking_gap(a0, r12);
+    b.inv_breaking_gap[i] = 1.0 / gap;
     b.shell[i] = site.shell;
     b.radius[i] = radius;
     b.inv_radius[i] = 1.0 / radius;
     b.rolling[i] = 4.0 * site.hold * r12 / radius;
     b.drag[i] = 2.0 * zeta * std::sqrt(1.2 * table.material().modulus * a0 / mass);
     places[4 * bit + 3] = radius;
-    put(bit, {{site.n[0], site.n[1], site.n[2]}, -2.0 / 3.0 * ROOT_6 / b.inv_breaking_gap[i], {}, {}, {}, 1.0, 1.0, 0.0});
+    put(bit, {{site.n[0], site.n[1], site.n[2]}, -2.0 / 3.0 * ROOT_6 * gap, {}, {}, {}, 1.0, 1.0, 0.0});
   }
 }
 
@@ -157,8 +167,8 @@ GrainLanes::GrainLanes(const GrainTable &table, double zeta) :
 
 GrainLanes::Grain GrainLanes::get(int bit) const
 {
-  const Block &b = blocks[bit / WIDTH];
-  const int i = bit % WIDTH;
+  const Block &b = blocks[slots[bit] / WIDTH];
+  const int i = slots[bit] % WIDTH;
   Grain g;
   for (int d = 0; d < 3; d++) {
     g.n[d] = b.n[d][i];
@@ -175,8 +185,8 @@ GrainLanes::Grain GrainLanes::get(int bit) const
 
 void GrainLanes::put(int bit, const Grain &g)
 {
-  Block &b = blocks[bit / WIDTH];
-  const int i = bit % WIDTH;
+  Block &b = blocks[slots[bit] / WIDTH];
+  const int i = slots[bit] % WIDTH;
   for (int d = 0; d < 3; d++) {
     b.n[d][i] = g.n[d];
     b.v[d][i] = g.v[d];
@@ -193,30 +203,66 @@ void GrainLanes::put(int bit, const Grain &g)
   b.flies = b.flies || (g.awake > 0.0 && g.held == 0.0);
 }
 
+void GrainLanes::compact()
+{
+  size_t busy = 0, awake = 0;
+  for (const Block &b : blocks) {
+    if (!b.busy) continue;
+    busy += WIDTH;
+    for (double is : b.awake) awake += is > 0.0;
+  }
+  constexpr size_t FEW = 3;    // of four
+  if (4 * awake > FEW * busy) return;
+  std::vector<int> order;
+  order.reserve(bits.size());
+  for (const bool wanted : {true, false})
+    for (const int bit : bits)
+      if (this->awake(bit) == wanted) order.push_back(bit);
+
+  std::vector<Block> before = blocks;
+  for (Block &b : blocks) b.busy = b.flies = false;
+  constexpr int FIELDS = offsetof(Block, busy) / sizeof(double) / WIDTH;
+  for (size_t slot = 0; slot < order.size(); slot++) {
+    const int bit = order[slot], from = slots[bit];
+    const double *old = before[from / WIDTH].hold + from % WIDTH;
+    Block &b = blocks[slot / WIDTH];
+    double *now = b.hold + slot % WIDTH;
+    for (int field = 0; field < FIELDS; field++) now[field * WIDTH] = old[field * WIDTH];
+    slots[bit] = static_cast<int>(slot);
+    const bool is = b.awake[slot % WIDTH] > 0.0;
+    b.busy = b.busy || is;
+    b.flies = b.flies || (is && b.held[slot % WIDTH] == 0.0);
+  }
+  bits = std::move(order);
+}
+
 /* ---------------------------------------------------------------------- */
 
 void GrainLanes::advance(const CarrierStep &step, bool settle)
 {
   fastest = 0.0;
-  for (size_t k = 0; k < blocks.size(); k++)
-    if (blocks[k].busy) advance(blocks[k], &places[4 * WIDTH * k], step, settle);
+  for (size_t k = 0; k < blocks.size(); k++) {
+    if (!blocks[k].busy) continue;
+    advance(blocks[k], step, settle);
+    show_places(blocks[k], &bits[k * WIDTH]);
+  }
   fastest = std::sqrt(fastest);
 }
 
-void GrainLanes::find_flying(std::vector<int> &bits) const
+void GrainLanes::find_flying(std::vector<int> &found) const
 {
-  bits.clear();
+  found.clear();
   for (size_t k = 0; k < blocks.size(); k++) {
     if (!blocks[k].flies) continue;
     for (int i = 0; i < WIDTH; i++)
-      if (blocks[k].awake[i] > 0.0 && blocks[k].held[i] == 0.0) bits.push_back(static_cast<int>(k) * WIDTH + i);
+      if (blocks[k].awake[i] > 0.0 && blocks[k].held[i] == 0.0) found.push_back(bits[k * WIDTH + i]);
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
 // the loop over the grains runs in vectors: all that it calls is inlined
-DUST_VECTORS void GrainLanes::advance(Block &b, double *place, const CarrierStep &carrier, bool settle)
+DUST_VECTORS void GrainLanes::advance(Block &b, const CarrierStep &carrier, bool settle)
 {
   const double *a = carrier.motion.acceleration, *w = carrier.motion.spin, *alpha = carrier.motion.angular_acceleration;
   const Step step = {carrier.h,
@@ -268,13 +314,18 @@ DUST_VECTORS void GrainLanes::advance(Block &b, double *place, const CarrierStep
     any += b.awake[i];
     flying += b.awake[i] * (1.0 - b.held[i]);
     max = std::max(max, speed2[i]);
-    for (int d = 0; d < 3; d++) {
-      place[4 * i + d] = (b.shell[i] + b.gap[i]) * b.n[d][i];
-      b.push[d][i] = b.twist[d][i] = 0.0;
-    }
+    for (int d = 0; d < 3; d++) b.push[d][i] = b.twist[d][i] = 0.0;
     b.touched[i] = 0.0;
   }
   fastest = std::max(fastest, max);
   b.busy = any > 0.0;
   b.flies = flying > 0.0;
+}
+
+void GrainLanes::show_places(const Block &b, const int *bits_of_block)
+{
+  for (int i = 0; i < WIDTH; i++) {
+    double *place = &places[4 * bits_of_block[i]];
+    for (int d = 0; d < 3; d++) place[d] = (b.shell[i] + b.gap[i]) * b.n[d][i];
+  }
 }

@@ -59,13 +59,15 @@ class GrainLanes {
   int grains() const { return count; }
   Grain get(int bit) const;
   void put(int bit, const Grain &grain);
+  /*! Puts those that are awake side by side if many sleep beside them, to be passed over */
+  void compact();
 
   /*! Adds to what others do to a grain in the step to come, f times a acceleration and t times b angular acceleration;
    *  it wakes up */
   void push(int bit, const double *f, double a, const double *t, double b)
   {
-    Block &block = blocks[bit / WIDTH];
-    const int i = bit % WIDTH;
+    Block &block = blocks[slots[bit] / WIDTH];
+    const int i = slots[bit] % WIDTH;
     for (int d = 0; d < 3; d++) {
       block.push[d][i] += a * f[d];
       block.twist[d][i] += b * t[d];
@@ -78,25 +80,25 @@ class GrainLanes {
    *  \param settle  whether grains that only rock on their contacts, and no other touches, are put to rest */
   void advance(const CarrierStep &step, bool settle);
 
-  bool held(int bit) const { return blocks[bit / WIDTH].held[bit % WIDTH] != 0.0; }
-  bool awake(int bit) const { return blocks[bit / WIDTH].awake[bit % WIDTH] != 0.0; }
+  bool held(int bit) const { return blocks[slots[bit] / WIDTH].held[slots[bit] % WIDTH] != 0.0; }
+  bool awake(int bit) const { return blocks[slots[bit] / WIDTH].awake[slots[bit] % WIDTH] != 0.0; }
   void set_awake(int bit, bool is)
   {
-    Block &b = blocks[bit / WIDTH];
-    b.awake[bit % WIDTH] = is;
+    Block &b = blocks[slots[bit] / WIDTH];
+    b.awake[slots[bit] % WIDTH] = is;
     b.busy = b.busy || is;
   }
-  double gap(int bit) const { return blocks[bit / WIDTH].gap[bit % WIDTH]; }
+  double gap(int bit) const { return blocks[slots[bit] / WIDTH].gap[slots[bit] % WIDTH]; }
 
   // place relative to the carrier's centre, velocity over it, spin relative to it
   const double *place(int bit) const { return &places[4 * bit]; }
   void velocity(int bit, double *v) const
   {
-    for (int d = 0; d < 3; d++) v[d] = blocks[bit / WIDTH].v[d][bit % WIDTH];
+    for (int d = 0; d < 3; d++) v[d] = blocks[slots[bit] / WIDTH].v[d][slots[bit] % WIDTH];
   }
   void spin(int bit, double *w) const
   {
-    for (int d = 0; d < 3; d++) w[d] = blocks[bit / WIDTH].spin[d][bit % WIDTH];
+    for (int d = 0; d < 3; d++) w[d] = blocks[slots[bit] / WIDTH].spin[d][slots[bit] % WIDTH];
   }
 
   double max_speed() const { return fastest; }    //!< of the last step
@@ -104,8 +106,8 @@ class GrainLanes {
   {
     return std::any_of(blocks.begin(), blocks.end(), [](const Block &block) { return block.busy; });
   }
-  /*! All without a neck to the carrier, in the order of their bits */
-  void find_flying(std::vector<int> &bits) const;
+  /*! All without a neck to the carrier, in any order */
+  void find_flying(std::vector<int> &found) const;
 
  private:
   struct alignas(64) Block {
@@ -121,10 +123,12 @@ class GrainLanes {
   int count;
   double friction, theta_crit;
   std::vector<Block> blocks;
+  std::vector<int> slots, bits;    // where a grain is, WIDTH to a block; which grain is there
   std::vector<double> places;    // four numbers a grain, the last one its radius
   double fastest = 0.0;
 
-  void advance(Block &block, double *place, const CarrierStep &step, bool settle);
+  void advance(Block &block, const CarrierStep &step, bool settle);
+  void show_places(const Block &block, const int *bits_of_block);
 };
 
 }    // namespace Dust

@@ -16,7 +16,7 @@ using namespace Dust;
 GrainPairs::GrainPairs(const GrainTable &grains, double zeta, double softening) :
     table(grains), gamma(table.material().cohesion * table.material().gamma),
     modulus(table.material().grain_modulus / softening), damping(zeta * std::pow(softening, -0.6)),
-    hard_modulus(table.material().grain_modulus)
+    hard_modulus(table.material().grain_modulus), hard_share(std::cbrt(1.0 / softening))
 {
   double sum = 0.0;
   for (int bit = 0; bit < table.grains(); bit++) sum += table.site(bit).shell - table.carrier_radius();
@@ -69,6 +69,7 @@ void GrainPairs::find(const GrainLanes &grains, const std::vector<char> &present
 void GrainPairs::push(GrainLanes &grains, const std::vector<char> &present, double h)
 {
   if (2.0 * travelled >= skin) {
+    grains.compact();
     find(grains, present);
     travelled = 0.0;
   }
@@ -108,11 +109,11 @@ bool GrainPairs::touch(GrainLanes &grains, const Pair &pair, const double *r, do
   const double closing = dot(u, n);
   for (int d = 0; d < 3; d++) u[d] -= closing * n[d];
 
-  const double x = jkr_contact_radius(overlap / gap), y3 = x * std::sqrt(x), force = hold * jkr_force(x);
+  const double part = overlap / gap, x = jkr_contact_radius(part, part > 0.0 ? std::sqrt(part / (2.0 * ROOT_6)) + 0.5 : 0.7), y3 = x * std::sqrt(x), force = hold * jkr_force(x);
   constexpr double LEAST = 0.1;    // the slope of the branch has no bound at its end, nor its sign a meaning there
   const double slope = (24.0 * y3 - 12.0) * x / (ROOT_6 * std::max(8.0 * y3 - 4.0 / 3.0, LEAST));
   const double stiffness = hold / gap * std::max(slope, LEAST);
-  const double hard_a0 = equilibrium_contact_radius(gamma, r12, hard_modulus);
+  const double hard_a0 = a0 * hard_share;
   const double eta = 2.0 * damping * std::sqrt(1.2 * hard_modulus * hard_a0 / me) / hard_a0;
   const double c = std::min(eta * me * x * a0, 2.0 * std::sqrt(stiffness * me));
   const double normal = (force + c * closing) / (1.0 + (0.5 * c * h + 0.25 * stiffness * h * h) / me);

@@ -61,7 +61,7 @@ class GrainPairs {
     Pair(int i, int j, float r2) : first(i), second(j), reach2(r2), neck(false) {}
   };
   const GrainTable &table;
-  const double gamma, modulus, damping, hard_modulus;
+  const double gamma, modulus, damping, hard_modulus, hard_share;    // hard_share: of a0
   double skin, cell, far;    // lengths: of a search beyond contact, of its cells, of grains from the carrier's centre
   std::vector<Pair> pairs;
   std::vector<Neck> joined;
