@@ -122,7 +122,7 @@ void FixDustDetach::setup(int /*vflag*/)
       carriers.state[i] = AT_REST;
       carriers.began[i] = steps;
       collide(i);
-    } else
+    } else if (!settings.criteria.meet || !carriers.together[i])    // those that are followed know the spin
       spin_off(i);
   }
   carriers.show_standing();

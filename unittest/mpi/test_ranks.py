@@ -180,3 +180,46 @@ def test_inertia_from_motion_on_other_ranks_and_after_a_restart(one_rank, tmp_pa
     assert restarted.splitlines()[-1] == one[1].splitlines()[-1]
     # and as by contact forces: these carriers are free
     assert one[1].splitlines()[-1].split()[:6] == one_rank[1].splitlines()[-1].split()[:6]
+
+
+# a dense layer of many sizes whose grains knock others off, while carriers cross borders and after they have left the wall
+MEETING = {
+    "tangential": "integrate",
+    "dust": "texture monolayer 30e-6 coverage 0.2 seed 1 bare 0.6 distribution lognormal 30e-6 1.5",
+    "more": "meet yes",
+    "steps": "20000",
+}
+
+
+@pytest.fixture(scope="module")
+def meeting(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("meeting"), 1, **MEETING)
+
+
+def numbers(thermo: str) -> list[list[float]]:
+    return [[float(word) for word in line.split()] for line in thermo.splitlines()[1:]]
+
+
+def assert_same_totals(found: str, expected: str):
+    """Counts are the same; masses of grains of many sizes are summed in another order on other ranks."""
+    assert numbers(found)[-1] == pytest.approx(numbers(expected)[-1], rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize("ranks, newton", [(2, "off"), (4, "on")])
+def test_grains_that_meet_on_any_number_of_ranks(meeting, tmp_path, ranks, newton):
+    *_, knocked, followed = numbers(meeting[1])[-1]
+    assert knocked > 20
+    assert followed == 8  # all carriers' grains still are
+    state, thermo, events = run(tmp_path, ranks, newton=newton, **MEETING)
+    assert state == meeting[0]
+    assert events == meeting[2]
+    assert_same_totals(thermo, meeting[1])
+
+
+@pytest.mark.parametrize("before, after", [(1, 1), (2, 4)])
+def test_restart_while_grains_are_followed(meeting, tmp_path, before, after):
+    """As the run that was not interrupted: nothing touches the carriers any more."""
+    run(tmp_path, before, **{**MEETING, "steps": "9000"}, save="yes")
+    state, thermo, _ = run(tmp_path, after, start="restart", **MEETING)
+    assert state == meeting[0]
+    assert_same_totals(thermo, meeting[1])
