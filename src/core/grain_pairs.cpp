@@ -95,6 +95,8 @@ bool GrainPairs::touch(GrainLanes &grains, const Pair &pair, const double *r, do
   if (!grains.awake(i) && !grains.awake(j)) return true;
 
   const double mi = mass(i), mj = mass(j), me = mi * mj / (mi + mj);
+  // they touch in the middle of the overlap, by the share of their radii: no angular momentum comes from nowhere
+  const double share = distance / (ri + rj), lever_i = share * ri, lever_j = share * rj;
   double n[3], vi[3], vj[3], wi[3], wj[3], spin[3], u[3];    // u: slip of i over j
   grains.velocity(i, vi);
   grains.velocity(j, vj);
@@ -102,7 +104,7 @@ bool GrainPairs::touch(GrainLanes &grains, const Pair &pair, const double *r, do
   grains.spin(j, wj);
   for (int d = 0; d < 3; d++) {
     n[d] = r[d] / distance;
-    spin[d] = ri * wi[d] + rj * wj[d];
+    spin[d] = lever_i * wi[d] + lever_j * wj[d];
   }
   cross(spin, n, u);
   for (int d = 0; d < 3; d++) u[d] += vi[d] - vj[d];
@@ -121,10 +123,10 @@ bool GrainPairs::touch(GrainLanes &grains, const Pair &pair, const double *r, do
                                                             me * slip / (7.0 * h));
   const double rub = slip > 0.0 ? most / slip : 0.0;
 
-  double f[3], torque[3];    // on i; the torque per radius, the same on both
+  double f[3], torque[3];    // on i; the torque per lever, the same on both
   for (int d = 0; d < 3; d++) f[d] = -normal * n[d] - rub * u[d];
   cross(n, f, torque);
-  grains.push(i, f, 1.0 / mi, torque, 1.0 / (0.4 * mi * ri));
-  grains.push(j, f, -1.0 / mj, torque, 1.0 / (0.4 * mj * rj));
+  grains.push(i, f, 1.0 / mi, torque, lever_i / (0.4 * mi * ri * ri));
+  grains.push(j, f, -1.0 / mj, torque, lever_j / (0.4 * mj * rj * rj));
   return true;
 }

@@ -28,7 +28,7 @@ TEST(CarrierData, StandsAsItHasTurned)
   Deck deck;
   deck.box();
   deck.carrier(0.0, 0.0, 2e-3, 0.0, 0.0, 0.0);
-  CarrierData carriers(static_cast<LAMMPS *>(deck.lmp), true, true, 0);
+  CarrierData carriers(static_cast<LAMMPS *>(deck.lmp), true, true, 0, false);
   carriers.grow(2);
   carriers.clear(0);
   carriers.orientation[0] = Dust::Quaternion();

@@ -38,6 +38,10 @@ const std::vector<std::pair<std::string, std::string>> KEYWORDS = {
     {"rolling", "0.15"},
     {"damping", "1"},
     {"tangential", "integrate"},
+    {"meet", "yes"},
+    {"cohesion", "0.7"},
+    {"meet_softening", "100"},
+    {"meet_step", "1e-8"},
     {"criteria", "liftoff"},
     {"counts", "yes"},
     {"every", "10"},
@@ -306,6 +310,16 @@ TEST(FixDustDetachWords, WrongInputIsNamed)
   names(ok + "tangential sideways", "sideways");
   names(ok + "rolling -1", "rolling");
   names(ok + "damping -1", "damping");
+  names(ok + "tangential integrate meet maybe", "maybe");
+  names(ok + "meet yes", "meet yes needs tangential integrate");
+  names(ok + "tangential impulse meet yes", "meet yes needs tangential integrate");
+  names(ok + "tangential integrate criteria ibrahim meet yes", "meet yes needs criteria liftoff");
+  names(ok + "tangential integrate cohesion 1", "cohesion needs meet yes");
+  names(ok + "tangential integrate meet no meet_step 1e-8", "meet_step needs meet yes");
+  names(ok + "tangential integrate meet_softening 10", "meet_softening needs meet yes");
+  names(ok + "tangential integrate meet yes cohesion 0", "cohesion");
+  names(ok + "tangential integrate meet yes meet_softening 0.5", "meet_softening");
+  names(ok + "tangential integrate meet yes meet_step -1e-9", "meet_step");
   names(ok + "rolling", "rolling");
   names(ok + "criteria all", "all");
   names(ok + "every 0", "every value 0");
