@@ -19,6 +19,19 @@ inline void cross(const double *a, const double *b, double *c)
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/*! A vector of three that a compiler takes apart: for loops over many of a kind, which then run in vector lanes */
+struct Vector {
+  double x, y, z;
+};
+inline Vector operator+(const Vector &a, const Vector &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(const Vector &a, const Vector &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(double c, const Vector &a) { return {c * a.x, c * a.y, c * a.z}; }
+inline double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector cross(const Vector &a, const Vector &b)
+{
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 }    // namespace Dust
 
 #endif

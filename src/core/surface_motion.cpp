@@ -14,18 +14,6 @@ using namespace Dust;
 
 namespace {
 
-struct Vector {
-  double x, y, z;
-};
-inline Vector operator+(const Vector &a, const Vector &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vector operator-(const Vector &a, const Vector &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vector operator*(double c, const Vector &a) { return {c * a.x, c * a.y, c * a.z}; }
-inline double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vector cross(const Vector &a, const Vector &b)
-{
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // of the carrier: its acceleration, its spin at the start and how much that changes
 struct CarrierStep {
   double dt, inv_dt;

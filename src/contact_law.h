@@ -1,0 +1,50 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CONTACT_LAW_H
+#define DUST_CONTACT_LAW_H
+
+#include "gran_sub_mod_dust_normal.h"
+
+namespace LAMMPS_NS {
+
+// what fused loops need of a granular model: which loop it is for, and its coefficients
+
+class ContactLaw {
+ public:
+  enum Kind {
+    HERTZ,    // hertz or hertz/material, mindlin, coeff_restitution/limited
+    GRAIN,    // jkr/vdw, mindlin, viscoelastic, dominik/tielens
+    MODEL     // any other: LAMMPS' own functions, contact by contact
+  };
+
+  explicit ContactLaw(Granular_NS::GranularModel *);
+
+  Kind kind;
+  Granular_NS::GranularModel *model;
+  Granular_NS::GranSubModNormalJKRVdW *normal;    // of grains
+  double stiffness, damping, shear_stiffness, shear_damping, friction, theta_crit;
+  bool synchronized;
+  int shear_place, neck_place;    // in a contact's history
+  Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;    // for the radii asked for last
+
+  // whether spheres of these radii are within reach of each other; not for MODEL
+  bool touch(double rsq, double radius_i, double radius_j)
+  {
+    if (kind == GRAIN) {
+      if (radius_i != last_i || radius_j != last_j) use_radii(radius_i, radius_j);
+      return rsq < reach2;
+    }
+    const double radii = radius_i + radius_j;
+    return rsq < radii * radii;
+  }
+
+ private:
+  double last_i, last_j, reach2;
+  void use_radii(double, double);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
