@@ -75,10 +75,10 @@ ContactLaw::Kind kind_of(const GranularModel *model)
 
 /* ---------------------------------------------------------------------- */
 
-ContactLaw::ContactLaw(GranularModel *_model) :
+ContactLaw::ContactLaw(GranularModel *_model, int number) :
     kind(kind_of(_model)), model(_model), normal(nullptr), stiffness(0.0), damping(0.0), shear_stiffness(0.0),
     shear_damping(0.0), friction(0.0), theta_crit(0.0), synchronized(synchronizes(_model, 0)), shear_place(0),
-    neck_place(0), adhesion(), last_i(-1.0), last_j(-1.0), reach2(0.0)
+    neck_place(0), stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(), last_i(-1.0), last_j(-1.0), reach2(0.0)
 {
   if (kind == MODEL) return;
   damping = Damping::coefficient(model->damping_model);
@@ -99,10 +99,12 @@ ContactLaw::ContactLaw(GranularModel *_model) :
 
 void ContactLaw::use_radii(double radius_i, double radius_j)
 {
+  stamp++;
   last_i = radius_i;
   last_j = radius_j;
   const double radii = radius_i + radius_j;
-  adhesion = normal->adhesion(radius_i * radius_j / radii);
+  effective_radius = radius_i * radius_j / radii;
+  adhesion = normal->adhesion(effective_radius);
   const double reach = radii + adhesion.reach;
   reach2 = reach * reach;
 }

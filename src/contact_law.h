@@ -7,6 +7,8 @@
 
 #include "gran_sub_mod_dust_normal.h"
 
+#include <cstdint>
+
 namespace LAMMPS_NS {
 
 // what fused loops need of a granular model: which loop it is for, and its coefficients
@@ -19,7 +21,8 @@ class ContactLaw {
     MODEL     // any other: LAMMPS' own functions, contact by contact
   };
 
-  explicit ContactLaw(Granular_NS::GranularModel *);
+  // \param number  another one for each law of a process
+  ContactLaw(Granular_NS::GranularModel *, int number);
 
   Kind kind;
   Granular_NS::GranularModel *model;
@@ -27,7 +30,10 @@ class ContactLaw {
   double stiffness, damping, shear_stiffness, shear_damping, friction, theta_crit;
   bool synchronized;
   int shear_place, neck_place;    // in a contact's history
-  Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;    // for the radii asked for last
+  std::int64_t stamp;    // another one whenever any of these numbers has changed
+  // of grains, for the radii asked for last
+  double effective_radius;
+  Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;
 
   // whether spheres of these radii are within reach of each other; not for MODEL
   bool touch(double rsq, double radius_i, double radius_j)

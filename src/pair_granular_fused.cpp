@@ -17,6 +17,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cstdint>
 
 using namespace LAMMPS_NS;
 using Dust::ContactBatch;
@@ -25,8 +26,6 @@ using Dust::Vector;
 
 namespace {
 
-Vector difference(const double *a, const double *b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
 void add_to(double *sum, const Vector &v)
 {
   sum[0] += v.x;
@@ -34,7 +33,7 @@ void add_to(double *sum, const Vector &v)
   sum[2] += v.z;
 }
 
-Vector three(const double *v) { return {v[0], v[1], v[2]}; }
+Vector at(const double *v, int i = 0) { return {v[3 * i], v[3 * i + 1], v[3 * i + 2]}; }
 
 void put(double *to, const Vector &v)
 {
@@ -60,8 +59,9 @@ struct PairGranularFused::Waiting {
   Dust::HertzBatch hertz;
   GrainBatch grains;
   ContactBatch done;    // of other laws
-  Contact contacts[ContactBatch::SIZE];
+  Contact contacts[ContactBatch::COUNT];
   int count = 0;
+  std::int64_t stamp[2][ContactBatch::COUNT] = {};    // of the law whose coefficients stand there
 
   void clear()
   {
@@ -81,7 +81,7 @@ struct PairGranularFused::Waiting {
 
 /* ---------------------------------------------------------------------- */
 
-PairGranularFused::PairGranularFused(LAMMPS *_lmp) : PairGranular(_lmp), laws_known(false), none_fused(true) {}
+PairGranularFused::PairGranularFused(LAMMPS *_lmp) : PairGranular(_lmp), laws_known(false), none_fused(true), laws_made(0) {}
 
 PairGranularFused::~PairGranularFused() = default;
 
@@ -99,12 +99,18 @@ void PairGranularFused::init_style()
   PairGranular::init_style();
 }
 
+void PairGranularFused::reset_dt()
+{
+  laws_known = false;
+  PairGranular::reset_dt();
+}
+
 /* ---------------------------------------------------------------------- */
 
 void PairGranularFused::read_laws()
 {
   laws.clear();
-  for (int m = 0; m < nmodels; m++) laws.emplace_back(models_list[m]);
+  for (int m = 0; m < nmodels; m++) laws.emplace_back(models_list[m], ++laws_made);
   none_fused = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::MODEL; });
   laws_known = true;
   if (!waiting && !none_fused) waiting = std::make_unique<Waiting>();
@@ -131,38 +137,45 @@ void PairGranularFused::compute(int eflag, int vflag)
   }
   ev_init(eflag, vflag);
   for (int m = 0; m < nmodels; m++) models_list[m]->history_update = update->setupflag == 0;
-  for (int ii = 0; ii < list->inum; ii++) gather(list->ilist[ii]);
-  compute_all();
+  if (list->inum) gather();
+  compute_waiting();
 }
 
 /* ----------------------------------------------------------------------
-   contacts of an atom with those of its list
+   contacts in the order of the list
 ------------------------------------------------------------------------- */
 
-void PairGranularFused::gather(int i)
+void PairGranularFused::gather()
 {
-  double *const *x = atom->x;
-  const double *radius = atom->radius, *special = force->special_lj;
-  const int *type = atom->type, *indices = types_indices[type[i]];
-  const int *neighbors = list->firstneigh[i], n = list->numneigh[i];
-  int *touch = fix_history->firstflag[i];
-  double *history = fix_history->firstvalue[i];
-  const double xi = x[i][0], yi = x[i][1], zi = x[i][2], radius_i = radius[i];
+  const double *x = atom->x[0], *radius = atom->radius, *special = force->special_lj;
+  const int *type = atom->type, size = size_history, inum = list->inum;
+  const int *ilist = list->ilist, *numneigh = list->numneigh, *const *firstneigh = list->firstneigh;
+  int *const *firsttouch = fix_history->firstflag;
+  double *const *firsthistory = fix_history->firstvalue;
 
-  for (int jj = 0; jj < n; jj++) {
-    const int j = neighbors[jj] & NEIGHMASK;
-    if (special[sbmask(neighbors[jj])] == 0.0) continue;
-    ContactLaw &law = laws[indices[type[j]]];
-    const double dx = xi - x[j][0], dy = yi - x[j][1], dz = zi - x[j][2];
-    const double rsq = dx * dx + dy * dy + dz * dz;
-    const bool touches =
-        law.kind == ContactLaw::MODEL ? model_touches(law, i, j, touch[jj]) : law.touch(rsq, radius_i, radius[j]);
-    if (touches) {
-      touch[jj] = 1;
-      add(law, i, j, rsq, history + size_history * jj);
-    } else if (touch[jj]) {    // else its history is 0 already
-      touch[jj] = 0;
-      std::fill_n(history + size_history * jj, size_history, 0.0);
+  for (int ii = 0; ii < inum; ii++) {
+    const int i = ilist[ii], n = numneigh[i];
+    if (n == 0) continue;
+    const int *neighbors = firstneigh[i], *indices = types_indices[type[i]];
+    int *touch = firsttouch[i];
+    double *history = firsthistory[i];
+    const Vector xi = at(x, i);
+    const double radius_i = radius[i];
+    for (int jj = 0; jj < n; jj++, history += size) {
+      const int j = neighbors[jj] & NEIGHMASK;
+      if (special[sbmask(neighbors[jj])] == 0.0) continue;
+      ContactLaw &law = laws[indices[type[j]]];
+      const Vector dx = xi - at(x, j);
+      const double rsq = dot(dx, dx);
+      const bool touches = law.kind == ContactLaw::MODEL ? model_touches(law, i, j, touch[jj])
+                                                         : law.touch(rsq, radius_i, radius[j]);
+      if (touches) {
+        touch[jj] = 1;
+        add(law, i, j, dx, rsq, history);
+      } else if (touch[jj]) {    // else its history is 0 already
+        touch[jj] = 0;
+        std::fill_n(history, size, 0.0);
+      }
     }
   }
 }
@@ -197,59 +210,80 @@ double PairGranularFused::effective_mass(int i, int j) const
 }
 
 /* ----------------------------------------------------------------------
-   a contact to those that wait, with all that its law needs
+   a contact to those that wait; what belongs to the radii of a law is known here only
 ------------------------------------------------------------------------- */
 
-void PairGranularFused::add(ContactLaw &law, int i, int j, double rsq, double *history)
+void PairGranularFused::add(ContactLaw &law, int i, int j, const Vector &dx, double rsq, double *history)
 {
   ContactBatch &batch = waiting->batch(law.kind);
   const int k = batch.count++;
   waiting->contacts[waiting->count++] = {&law, history, i, j, k};
-
-  if (law.kind == ContactLaw::MODEL) {
+  batch.dx.set(k, dx);
+  batch.rsq[k] = rsq;
+  if (law.kind == ContactLaw::MODEL)
     compute_model(law, i, j, history, k);
-  } else {
-    const double *wi = atom->omega[i], *wj = atom->omega[j], ri = atom->radius[i], rj = atom->radius[j];
-    batch.dx.set(k, difference(atom->x[i], atom->x[j]));
-    batch.rsq[k] = rsq;
-    batch.radius_i[k] = ri;
-    batch.radius_j[k] = rj;
-    batch.velocity.set(k, difference(atom->v[i], atom->v[j]));
-    batch.turning.set(k, {ri * wi[0] + rj * wj[0], ri * wi[1] + rj * wj[1], ri * wi[2] + rj * wj[2]});
-    batch.mass[k] = effective_mass(i, j);
-    batch.half[k] = law.synchronized ? 0.5 * law.model->dt : 0.0;
-    batch.synchronized |= law.synchronized;
-    batch.damping[k] = law.damping;
-    batch.shear_stiffness[k] = law.shear_stiffness;
-    batch.shear_damping[k] = law.shear_damping;
-    batch.friction[k] = law.friction;
-    batch.shear.set(k, three(history + law.shear_place));
-    if (law.kind == ContactLaw::HERTZ)
-      waiting->hertz.stiffness[k] = law.stiffness;
-    else
-      add_grain(law, i, j, history + law.neck_place, k);
-  }
-  if (waiting->count == ContactBatch::SIZE) compute_all();
+  else if (waiting->stamp[law.kind][k] != law.stamp)    // else the last contact here had the same coefficients
+    set_coefficients(law, k);
+  if (waiting->count == ContactBatch::COUNT) compute_waiting();
 }
 
 /* ---------------------------------------------------------------------- */
 
-void PairGranularFused::add_grain(const ContactLaw &law, int i, int j, const double *kept, int k)
+void PairGranularFused::set_coefficients(const ContactLaw &law, int k)
 {
-  GrainBatch &batch = waiting->grains;
-  batch.spin.set(k, difference(atom->omega[i], atom->omega[j]));
-  batch.hamaker[k] = law.adhesion.hamaker;
-  batch.z0[k] = law.adhesion.z0;
-  batch.range[k] = law.adhesion.range;
-  batch.pull_off_force[k] = law.adhesion.pull_off_force;
-  batch.equilibrium_radius[k] = law.adhesion.equilibrium_radius;
-  batch.breaking_gap[k] = law.adhesion.breaking_gap;
-  batch.theta_crit[k] = law.theta_crit;
-  batch.neck[k] = kept[0];
-  batch.rolling.set(k, three(kept + 1));
-  batch.overlap[k] = kept[4];
-  batch.coasting[k] = kept[5];
-  batch.rate[k] = kept[6];
+  waiting->stamp[law.kind][k] = law.stamp;
+  ContactBatch &batch = waiting->batch(law.kind);
+  batch.half[k] = law.synchronized ? 0.5 * law.model->dt : 0.0;
+  batch.damping[k] = law.damping;
+  batch.shear_stiffness[k] = law.shear_stiffness;
+  batch.shear_damping[k] = law.shear_damping;
+  batch.friction[k] = law.friction;
+  if (law.kind == ContactLaw::HERTZ) {
+    waiting->hertz.stiffness[k] = law.stiffness;
+    return;
+  }
+  GrainBatch &grains = waiting->grains;
+  grains.effective_radius[k] = law.effective_radius;
+  grains.theta_crit[k] = law.theta_crit;
+  grains.hamaker[k] = law.adhesion.hamaker;
+  grains.z0[k] = law.adhesion.z0;
+  grains.range[k] = law.adhesion.range;
+  grains.pull_off_force[k] = law.adhesion.pull_off_force;
+  grains.equilibrium_radius[k] = law.adhesion.equilibrium_radius;
+  grains.breaking_gap[k] = law.adhesion.breaking_gap;
+}
+
+/* ----------------------------------------------------------------------
+   what the laws need of those that wait
+------------------------------------------------------------------------- */
+
+void PairGranularFused::complete()
+{
+  const double *v = atom->v[0], *omega = atom->omega[0], *radius = atom->radius;
+  for (int m = 0; m < waiting->count; m++) {
+    const auto [law, history, i, j, k] = waiting->contacts[m];
+    if (law->kind == ContactLaw::MODEL) continue;
+    ContactBatch &batch = waiting->batch(law->kind);
+    const double ri = radius[i], rj = radius[j];
+    const Vector wi = at(omega, i), wj = at(omega, j);
+    batch.radius_i[k] = ri;
+    batch.radius_j[k] = rj;
+    batch.velocity.set(k, at(v, i) - at(v, j));
+    batch.turning.set(k, ri * wi + rj * wj);
+    batch.mass[k] = effective_mass(i, j);
+    batch.synchronized |= law->synchronized;
+    batch.shear_damped |= law->shear_damping != 0.0;
+    batch.shear.set(k, at(history + law->shear_place));
+    if (law->kind == ContactLaw::HERTZ) continue;
+    GrainBatch &grains = waiting->grains;
+    const double *kept = history + law->neck_place;
+    grains.spin.set(k, wi - wj);
+    grains.neck[k] = kept[0];
+    grains.rolling.set(k, at(kept + 1));
+    grains.overlap[k] = kept[4];
+    grains.coasting[k] = kept[5];
+    grains.rate[k] = kept[6];
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -267,18 +301,18 @@ void PairGranularFused::compute_model(const ContactLaw &law, int i, int j, doubl
   model->history = history;
   model->calculate_forces();
   ContactBatch &batch = waiting->done;
-  batch.dx.set(k, three(model->dx));
-  batch.force.set(k, three(model->forces));
-  batch.torque_i.set(k, three(model->torquesi));
-  batch.torque_j.set(k, three(model->torquesj));
+  batch.force.set(k, at(model->forces));
+  batch.torque_i.set(k, at(model->torquesi));
+  batch.torque_j.set(k, at(model->torquesj));
 }
 
 /* ---------------------------------------------------------------------- */
 
-void PairGranularFused::compute_all()
+void PairGranularFused::compute_waiting()
 {
   const bool move = update->setupflag == 0;
   const double dt = models_list[0]->dt;
+  complete();
   if (waiting->hertz.count) Dust::compute_forces(waiting->hertz, dt, move);
   if (waiting->grains.count) Dust::compute_forces(waiting->grains, dt, move);
   keep_history();
@@ -319,17 +353,17 @@ void PairGranularFused::keep_history()
 
 void PairGranularFused::apply_forces()
 {
-  double **f = atom->f, **torque = atom->torque;
+  double *f = atom->f[0], *torque = atom->torque[0];
   const int nlocal = atom->nlocal, newton = force->newton_pair;
   for (int m = 0; m < waiting->count; m++) {
     const auto [law, history, i, j, k] = waiting->contacts[m];
     const ContactBatch &batch = waiting->batch(law->kind);
     const Vector on_i = batch.force[k];
-    add_to(f[i], on_i);
-    add_to(torque[i], batch.torque_i[k]);
+    add_to(f + 3 * i, on_i);
+    add_to(torque + 3 * i, batch.torque_i[k]);
     if (newton || j < nlocal) {
-      add_to(f[j], -1.0 * on_i);
-      add_to(torque[j], batch.torque_j[k]);
+      add_to(f + 3 * j, -1.0 * on_i);
+      add_to(torque + 3 * j, batch.torque_j[k]);
     }
     if (evflag)
       ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, on_i.x, on_i.y, on_i.z, batch.dx.x[k], batch.dx.y[k], batch.dx.z[k]);

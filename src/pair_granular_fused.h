@@ -11,6 +11,7 @@ PairStyle(granular,PairGranularFused);
 #ifndef LMP_PAIR_GRANULAR_FUSED_H
 #define LMP_PAIR_GRANULAR_FUSED_H
 
+#include "core/geometry.h"
 #include "pair_granular.h"
 
 #include <memory>
@@ -30,24 +31,27 @@ class PairGranularFused : public PairGranular {
   void compute(int, int) override;
   void coeff(int, char **) override;
   void init_style() override;
+  void reset_dt() override;
   double memory_usage() override;
 
  private:
   std::vector<class ContactLaw> laws;    // one for each of models_list
   bool laws_known, none_fused;
+  int laws_made;
   void read_laws();
   bool left_to_parent() const;
 
   // contacts in the order of the neighbor list that wait to be computed together
   struct Waiting;
   std::unique_ptr<Waiting> waiting;
-  void gather(int);
+  void gather();
   bool model_touches(const class ContactLaw &, int, int, int);
   double effective_mass(int, int) const;
-  void add(class ContactLaw &, int, int, double, double *);
-  void add_grain(const class ContactLaw &, int, int, const double *, int);
+  void add(class ContactLaw &, int, int, const Dust::Vector &, double, double *);
   void compute_model(const class ContactLaw &, int, int, double *, int);
-  void compute_all();
+  void set_coefficients(const class ContactLaw &, int);
+  void complete();
+  void compute_waiting();
   void keep_history();
   void apply_forces();
 };

@@ -32,10 +32,13 @@ template <int N> struct Vectors {
 /*! Contacts of two spheres that are computed together, out of place: what all laws need of them, and what they return.
  *  SI or any other consistent units; i and j are the spheres, the normal points from j to i. */
 struct ContactBatch {
-  static constexpr int SIZE = 256;
+  static constexpr int COUNT = 128;
+  // a line of the cache more: one contact's numbers would all fall into the same two places of the cache
+  static constexpr int SIZE = COUNT + 8;
 
   int count = 0;
   bool synchronized = false;    // some of the contacts have half > 0
+  bool shear_damped = false;    // some have a shear_damping
 
   // geometry and motion
   Vectors<SIZE> dx;                      // x_i - x_j
@@ -60,7 +63,7 @@ struct ContactBatch {
   void clear()
   {
     count = 0;
-    synchronized = false;
+    synchronized = shear_damped = false;
   }
 };
 
@@ -99,14 +102,18 @@ DUST_IN_LANES Vector only_if(bool there, const Vector &a)
  *  (2008), Eq. 17 for the turning of the displacement).
  *
  * \param shear         tangential displacement of the last step
- * \param n             normal of the velocities; \param whole that of the whole step, if the contact is synchronized
+ * \param n             normal of the velocities
+ * \param whole         that of the whole step, if the contact is synchronized
  * \param slip          relative velocity of the surfaces
- * \param stiffness     of the displacement, force/length; \param damping  of the velocity, force time/length
+ * \param stiffness     of the displacement, force/length
+ * \param damping       of the velocity, force time/length
  * \param limit         largest force
- * \tparam MOVE         whether the displacement grows with the slip */
-template <bool MOVE, bool SYNCHRONIZED>
+ * \tparam MOVE         whether the displacement grows with the slip
+ * \tparam SYNCHRONIZED whether any contact is
+ * \tparam DAMPED       whether any damping is not 0 */
+template <bool MOVE, bool SYNCHRONIZED, bool DAMPED>
 DUST_IN_LANES Shear mindlin(Vector shear, const Vector &n, const Vector &whole, bool synchronized, const Vector &slip,
-                     double dt, double stiffness, double damping, double limit)
+                            double dt, double stiffness, double damping, double limit)
 {
   constexpr double NEGLIGIBLE = 1.0e-10;
   bool turns = false;
@@ -121,12 +128,15 @@ DUST_IN_LANES Shear mindlin(Vector shear, const Vector &n, const Vector &whole, 
       shear = choose(turns, turned_into_plane(shear, whole), shear);
     }
   }
-  const Vector damped = SYNCHRONIZED ? choose(turns, turned_into_plane(slip, whole), slip) : slip;
+  Vector damped = slip;
+  // times 0, only its signs count
+  if (SYNCHRONIZED && MOVE)
+    damped = choose(turns, DAMPED ? turned_into_plane(slip, whole) : slip - dot(slip, whole) * whole, slip);
   const Vector damper = -damping * damped;
   const Vector force = -stiffness * shear + damper;
 
   const double size = std::sqrt(dot(force, force));
-  const bool slides = size > limit, sheared = std::sqrt(dot(shear, shear)) != 0.0;
+  const bool slides = size > limit, sheared = dot(shear, shear) != 0.0;
   const Vector cut = only_if(sheared, (limit / size) * force);
   return {choose(slides && sheared, (-1.0 / stiffness) * (cut - damper), shear), choose(slides, cut, force)};
 }

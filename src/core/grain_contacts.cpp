@@ -11,6 +11,7 @@
 #include "rolling.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 using namespace Dust;
@@ -20,43 +21,56 @@ namespace {
 constexpr double UNKNOWN = -1.0;    // a/a0 that Newton's method has not found
 
 /* ----------------------------------------------------------------------
-   a/a0 from that of the last step; as jkr_contact_radius(), but for lanes: all go through all steps, and keep their
-   first answer
+   A step of Newton's method, as jkr_contact_radius() makes it contact by contact: all lanes go on, and keep their first
+   answer. Returns whether there is none yet.
 ------------------------------------------------------------------------- */
 
-DUST_IN_LANES double contact_radius(double d, double guess)
+DUST_IN_LANES bool step_to_radius(GrainBatch &b, int k, double y, double depth, double x)
 {
-  const double depth = d / (2.0 * ROOT_6);
-  double y = std::sqrt(std::fabs(guess)), x = UNKNOWN;
-  for (int k = 0; k < JKR_STEPS; k++) {
-    const JKRStep newton = jkr_newton(y, depth);
-    // from there on nothing is true of y
-    y = newton.slope > JKR_FLAT ? y - newton.step : std::numeric_limits<double>::quiet_NaN();
-    const double found = std::fabs(newton.step) < JKR_SETTLED * y ? y * y : UNKNOWN;
-    x = x < 0.0 ? found : x;
-  }
-  return x;
+  const JKRStep newton = jkr_newton(y, depth);
+  // beyond the end of the branch y is nothing any more
+  y = newton.slope > JKR_FLAT ? y - newton.step : std::numeric_limits<double>::quiet_NaN();
+  const double found = std::fabs(newton.step) < JKR_SETTLED * y ? y * y : UNKNOWN;
+  x = x < 0.0 ? found : x;
+  b.root[k] = y;
+  b.radius[k] = x;
+  return x < 0.0;
 }
 
-DUST_IN_LANES void find_necks(GrainBatch &b)
+// a neck holds until the end of the branch, one forms at contact
+DUST_IN_LANES bool find_necks(GrainBatch &b)
 {
+  std::int64_t open = 0;
   for (int k = 0; k < b.count; k++) {
     const double r = std::sqrt(b.rsq[k]), overlap = b.radius_i[k] + b.radius_j[k] - r;
-    const double before = b.neck[k], breaking_gap = b.breaking_gap[k];
-    const double found = contact_radius(overlap / breaking_gap, before);
-    // a neck holds until the end of the branch, one forms at contact
-    const double stretched = before != 0.0 ? found : 0.0;
-    const double apart = overlap > -breaking_gap ? stretched : 0.0;
+    const double before = b.neck[k], gap = b.breaking_gap[k], depth = overlap / gap / (2.0 * ROOT_6);
+    const double stretched = before != 0.0 ? UNKNOWN : 0.0;
+    const double apart = overlap > -gap ? stretched : 0.0;
     b.distance[k] = r;
-    b.radius[k] = overlap >= 0.0 ? found : apart;
+    b.now[k] = overlap;
+    b.depth[k] = depth;
+    open += step_to_radius(b, k, std::sqrt(std::fabs(before)), depth, overlap >= 0.0 ? UNKNOWN : apart);
   }
+  return open;
 }
 
+DUST_IN_LANES bool find_radii(GrainBatch &b)
+{
+  std::int64_t open = 0;
+  for (int k = 0; k < b.count; k++) open += step_to_radius(b, k, b.root[k], b.depth[k], b.radius[k]);
+  return open;
+}
+
+// what few contacts need: the closed form, the force without a neck
 void find_the_rest(GrainBatch &b)
 {
-  for (int k = 0; k < b.count; k++)
+  for (int k = 0; k < b.count; k++) {
+    b.attraction[k] = 0.0;
     if (b.radius[k] < 0.0)
-      b.radius[k] = jkr_contact_radius((b.radius_i[k] + b.radius_j[k] - b.distance[k]) / b.breaking_gap[k]);
+      b.radius[k] = jkr_contact_radius(b.now[k] / b.breaking_gap[k]);
+    else if (b.radius[k] == 0.0 && b.now[k] > -b.range[k])
+      b.attraction[k] = -hamaker_force(b.hamaker[k], b.z0[k], b.effective_radius[k], -b.now[k]);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -78,11 +92,10 @@ DUST_IN_LANES double overlap_rate(GrainBatch &b, int k, double overlap, double a
   return now.rate;
 }
 
-template <bool MOVE, bool SYNCHRONIZED> DUST_IN_LANES void compute_all(GrainBatch &b, double dt)
+template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_all(GrainBatch &b, double dt)
 {
   for (int k = 0; k < b.count; k++) {
-    const double radius_i = b.radius_i[k], radius_j = b.radius_j[k], radii = radius_i + radius_j;
-    const double R = radius_i * radius_j / radii, overlap = radii - b.distance[k];
+    const double R = b.effective_radius[k], overlap = b.now[k];
     const double a0 = b.equilibrium_radius[k], Fc = b.pull_off_force[k], eta = b.damping[k], friction = b.friction[k];
     const Vector velocity = b.velocity[k], whole = (1.0 / b.distance[k]) * b.dx[k];
     const Vector n = SYNCHRONIZED ? half_step_normal(b, k) : whole;
@@ -96,9 +109,8 @@ template <bool MOVE, bool SYNCHRONIZED> DUST_IN_LANES void compute_all(GrainBatc
     const double approach = neck ? -parting : closing;
 
     const double held = Fc * jkr_force(x);
-    const double attracted = -hamaker_force(b.hamaker[k], b.z0[k], R, -overlap);
-    const double drawn = overlap > -b.range[k] ? attracted : 0.0;
-    const double elastic = neck ? held : drawn;
+    const double attraction = b.attraction[k];
+    const double elastic = neck ? held : attraction;
     const double damping = eta * b.mass[k] * a;
     const double normal = elastic + -damping * approach;
     const double limit = neck ? std::fabs(elastic + 2.0 * Fc) * friction : 0.0;
@@ -106,7 +118,7 @@ template <bool MOVE, bool SYNCHRONIZED> DUST_IN_LANES void compute_all(GrainBatc
     // nothing is remembered of before the neck
     const bool keeps = MOVE ? neck & !fresh : true;
     const Vector sheared = b.shear[k], rolled = b.rolling[k];
-    const Shear shear = mindlin<MOVE, SYNCHRONIZED>(
+    const Shear shear = mindlin<MOVE, SYNCHRONIZED, DAMPED>(
         only_if(keeps, sheared), n, whole, SYNCHRONIZED ? b.half[k] > 0.0 : false, slip, dt,
         b.shear_stiffness[k] * a, b.shear_damping[k] * damping, limit);
     b.shear.set(k, shear.displacement);
@@ -132,21 +144,29 @@ template <bool MOVE, bool SYNCHRONIZED> DUST_IN_LANES void compute_all(GrainBatc
     const double stiffness = rolling_stiffness(Fc, a / a0) / R;
     const Vector roll = R * cross(n, only_if(neck, -stiffness * xi));
     const Vector torque = -1.0 * cross(n, shear.force);
-    b.torque_i.set(k, (radius_i - 0.5 * overlap) * torque + roll);
-    b.torque_j.set(k, (radius_j - 0.5 * overlap) * torque - roll);
+    b.torque_i.set(k, (b.radius_i[k] - 0.5 * overlap) * torque + roll);
+    b.torque_j.set(k, (b.radius_j[k] - 0.5 * overlap) * torque - roll);
   }
 }
 
 }    // namespace
 
-DUST_LANES static void find(GrainBatch &batch) { find_necks(batch); }
+DUST_LANES static void find(GrainBatch &batch)
+{
+  bool open = find_necks(batch);
+  for (int n = 1; n < JKR_STEPS && open; n++) open = find_radii(batch);
+}
 
 DUST_LANES static void compute(GrainBatch &batch, double dt, bool move)
 {
-  if (batch.synchronized)
-    move ? compute_all<true, true>(batch, dt) : compute_all<false, true>(batch, dt);
+  if (!move)
+    compute_all<false, true, true>(batch, dt);
+  else if (!batch.synchronized)
+    compute_all<true, false, false>(batch, dt);
+  else if (!batch.shear_damped)
+    compute_all<true, true, false>(batch, dt);
   else
-    move ? compute_all<true, false>(batch, dt) : compute_all<false, false>(batch, dt);
+    compute_all<true, true, true>(batch, dt);
 }
 
 void Dust::compute_forces(GrainBatch &batch, double dt, bool move)

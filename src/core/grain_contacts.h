@@ -19,7 +19,7 @@ struct GrainBatch : ContactBatch {
   // of the materials and of the effective radius
   double hamaker[SIZE], z0[SIZE], range[SIZE];
   double pull_off_force[SIZE], equilibrium_radius[SIZE], breaking_gap[SIZE];
-  double theta_crit[SIZE];
+  double effective_radius[SIZE], theta_crit[SIZE];
 
   // Of the last step, changed. The neck is a/a0, or 0 for none; its sign is that of all that follows.
   double neck[SIZE];
@@ -28,7 +28,8 @@ struct GrainBatch : ContactBatch {
 
   double events[SIZE];    // a sum of these
 
-  double distance[SIZE], radius[SIZE];    // for the second half of the work: r, a/a0
+  // from one part of the work to the next: r, overlap, a/a0, force without a neck, Newton's unknown and depth (jkr.h)
+  double distance[SIZE], now[SIZE], radius[SIZE], attraction[SIZE], root[SIZE], depth[SIZE];
 };
 
 /*! Forces and torques, and what the contacts remember moved on, in the operations of LAMMPS' `pair_style granular` with

@@ -13,7 +13,7 @@ using namespace Dust;
 namespace {
 
 // the law's own numbers, in the order of LAMMPS' operations
-template <bool MOVE, bool SYNCHRONIZED> DUST_IN_LANES void compute_all(HertzBatch &b, double dt)
+template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_all(HertzBatch &b, double dt)
 {
   for (int k = 0; k < b.count; k++) {
     const Vector velocity = b.velocity[k];
@@ -32,7 +32,7 @@ template <bool MOVE, bool SYNCHRONIZED> DUST_IN_LANES void compute_all(HertzBatc
     const double damper = -rate * approach;
     const double normal = elastic + (damper < -elastic ? -elastic : damper);
 
-    const Shear shear = mindlin<MOVE, SYNCHRONIZED>(b.shear[k], n, whole, SYNCHRONIZED && b.half[k] > 0.0, slip, dt,
+    const Shear shear = mindlin<MOVE, SYNCHRONIZED, DAMPED>(b.shear[k], n, whole, SYNCHRONIZED && b.half[k] > 0.0, slip, dt,
                                                     b.shear_stiffness[k] * a, b.shear_damping[k] * rate,
                                                     std::fabs(normal) * b.friction[k]);
     b.shear.set(k, shear.displacement);
@@ -47,8 +47,12 @@ template <bool MOVE, bool SYNCHRONIZED> DUST_IN_LANES void compute_all(HertzBatc
 
 DUST_LANES void Dust::compute_forces(HertzBatch &batch, double dt, bool move)
 {
-  if (batch.synchronized)
-    move ? compute_all<true, true>(batch, dt) : compute_all<false, true>(batch, dt);
+  if (!move)
+    compute_all<false, true, true>(batch, dt);
+  else if (!batch.synchronized)
+    compute_all<true, false, false>(batch, dt);
+  else if (!batch.shear_damped)
+    compute_all<true, true, false>(batch, dt);
   else
-    move ? compute_all<true, false>(batch, dt) : compute_all<false, false>(batch, dt);
+    compute_all<true, true, true>(batch, dt);
 }
