@@ -64,7 +64,9 @@ if(IS_DIRECTORY "${surface_dir}")
   list(APPEND granular_fixes fix_surface_global fix_surface_local)
   target_include_directories(lammps_headers SYSTEM INTERFACE "${surface_dir}")
 endif()
-list(REMOVE_ITEM granular_pairs pair_granular)    # ours, a child of it, has its name
+# ours, children of them, have their names
+list(REMOVE_ITEM granular_pairs pair_granular)
+list(REMOVE_ITEM granular_fixes fix_wall_gran)
 list(TRANSFORM granular_pairs APPEND .h)
 list(TRANSFORM granular_fixes APPEND .h)
 
