@@ -66,7 +66,7 @@ if(IS_DIRECTORY "${surface_dir}")
 endif()
 # ours, children of them, have their names
 list(REMOVE_ITEM granular_pairs pair_granular)
-list(REMOVE_ITEM granular_fixes fix_wall_gran)
+list(REMOVE_ITEM granular_fixes fix_wall_gran fix_wall_gran_region)
 list(TRANSFORM granular_pairs APPEND .h)
 list(TRANSFORM granular_fixes APPEND .h)
 

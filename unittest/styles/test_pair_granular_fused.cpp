@@ -1,10 +1,12 @@
-// The pair force that computes many contacts at once, against LAMMPS' own loop, which it replaces: every bit of what moves
-// atoms and of what is put out must be the same.
+// The pair force that computes many contacts at once, and walls that look only at atoms near them, against LAMMPS' own,
+// which they replace: every bit of what moves atoms and of what is put out must be the same.
 
 #include "deck.h"
 
+#include "fix_wall_gran_region.h"
 #include "force.h"
 #include "lammps.h"
+#include "modify.h"
 #include "pair_granular.h"
 
 #include <cstdint>
@@ -16,7 +18,16 @@ using LAMMPS_NS::PairGranular;
 
 namespace {
 
-LAMMPS_NS::Pair *lammps_own(LAMMPS *lmp) { return new PairGranular(lmp); }
+LAMMPS_NS::Pair *own_pair(LAMMPS *lmp) { return new PairGranular(lmp); }
+
+template <class Wall> LAMMPS_NS::Fix *own_wall(LAMMPS *lmp, int narg, char **arg) { return new Wall(lmp, narg, arg); }
+
+void use_lammps_own(LAMMPS *lmp)
+{
+  lmp->force->pair_map->at("granular") = &own_pair;
+  lmp->modify->fix_map->at("wall/gran") = &own_wall<LAMMPS_NS::FixWallGran>;
+  lmp->modify->fix_map->at("wall/gran/region") = &own_wall<LAMMPS_NS::FixWallGranRegion>;
+}
 
 // all numbers of a state, bit by bit
 using State = std::vector<std::uint64_t>;
@@ -47,7 +58,7 @@ int differences(const std::string &set_up, const std::vector<std::string> &runs)
   for (const bool ours : {false, true}) {
     Deck deck;
     auto *lmp = static_cast<LAMMPS *>(deck.lmp);
-    if (!ours) (*lmp->force->pair_map)["granular"] = &lammps_own;
+    if (!ours) use_lammps_own(lmp);
     deck(set_up);
     for (const std::string &run : runs) {
       deck(run);
@@ -186,4 +197,43 @@ TEST(PairGranularFused, BetweenSteps)
             0);
   EXPECT_EQ(differences(shaken_box(both), {"run 100", "timestep 5e-7\nrun 100 pre no", "timestep 2e-6\nrun 100"}), 0);
   EXPECT_EQ(differences(shaken_box(both), {"run 100", "pair_coeff 1 1" + steel("1e8", "0.2") + "\nrun 100"}), 0);
+}
+
+// near enough to be looked at again, out of reach, on the other side, from one wall to the other
+TEST(FixWallGranNear, Planes)
+{
+  const std::string pair = GRANULAR + steel();
+  const std::string wall = "unfix floor\nfix floor all wall/gran granular", sides = " zplane 0.0 8.4e-3";
+  EXPECT_EQ(differences(shaken_box(pair, wall + sticky() + sides), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + sticky("0.0", "jkr/vdw/cut", "5e-6") + sides + " contacts"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " contacts"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + " zplane 0.1e-3 NULL\nfix top all wall/gran granular" + steel() + " zplane NULL 8.3e-3"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " wiggle z 1e-4 1e-3"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " shear x 0.5"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + " jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3" + sides), RUNS), 0);
+}
+
+TEST(FixWallGranNear, Regions)
+{
+  const auto wall = [](const std::string &region, const std::string &law) {
+    return shaken_box(GRANULAR + steel(), "variable way equal 1e-4*sin(5e3*time)\nvariable turn equal 300*time\n"
+                                          "region wall " +
+                                              region + "\nfix wall all wall/gran/region granular" + law + "region wall");
+  };
+  for (const std::string &law : {steel(), sticky()}) {
+    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("block 3e-3 5e-3 3e-3 5e-3 3e-3 5e-3 side out units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("cylinder z 4.2e-3 4.2e-3 4e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("sphere 4.2e-3 4.2e-3 4.2e-3 4e-3 units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box", law), RUNS), 0);
+    // moving, turning about an axis of their own and another one
+    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box move v_way NULL v_way", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0", law),
+                          RUNS),
+              0);
+    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law), RUNS),
+              0);
+    // what is left to LAMMPS
+    EXPECT_EQ(differences(wall("cone z 4.2e-3 4.2e-3 2e-3 4e-3 1e-3 8e-3 units box open 2", law), RUNS), 0);
+  }
 }
