@@ -97,7 +97,7 @@ ContactLaw::ContactLaw(GranularModel *_model, int number) :
 
 /* ---------------------------------------------------------------------- */
 
-void ContactLaw::use_radii(double radius_i, double radius_j)
+void ContactLaw::find_adhesion(double radius_i, double radius_j)
 {
   stamp++;
   last_i = radius_i;

@@ -35,20 +35,21 @@ class ContactLaw {
   double effective_radius;
   Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;
 
-  // whether spheres of these radii are within reach of each other; not for MODEL
-  bool touch(double rsq, double radius_i, double radius_j)
+  // whether spheres of these radii are within reach of each other, of grains
+  bool grain_touches(double rsq, double radius_i, double radius_j)
   {
-    if (kind == GRAIN) {
-      if (radius_i != last_i || radius_j != last_j) use_radii(radius_i, radius_j);
-      return rsq < reach2;
-    }
-    const double radii = radius_i + radius_j;
-    return rsq < radii * radii;
+    use_radii(radius_i, radius_j);
+    return rsq < reach2;
+  }
+
+  void use_radii(double radius_i, double radius_j)
+  {
+    if (kind == GRAIN && (radius_i != last_i || radius_j != last_j)) find_adhesion(radius_i, radius_j);
   }
 
  private:
   double last_i, last_j, reach2;
-  void use_radii(double, double);
+  void find_adhesion(double, double);
 };
 
 }    // namespace LAMMPS_NS

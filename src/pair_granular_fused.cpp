@@ -26,6 +26,8 @@ using Dust::Vector;
 
 namespace {
 
+constexpr int AHEAD = 8;    // contacts, of what is fetched from memory before it is needed
+
 void add_to(double *sum, const Vector &v)
 {
   sum[0] += v.x;
@@ -42,14 +44,16 @@ void put(double *to, const Vector &v)
   to[2] = v.z;
 }
 
-// one contact of the list: where it waits
-struct Contact {
+}    // namespace
+
+// one contact of the list
+struct PairGranularFused::Contact {
   ContactLaw *law;
   double *history;
-  int i, j, place;
+  int i, j, place;    // in its law's batch
+  double rsq;
+  Vector dx;
 };
-
-}    // namespace
 
 /* ----------------------------------------------------------------------
    no more contacts than fit into a batch: none of them can overflow
@@ -58,8 +62,8 @@ struct Contact {
 struct PairGranularFused::Waiting {
   Dust::HertzBatch hertz;
   GrainBatch grains;
-  ContactBatch done;    // of other laws
-  Contact contacts[ContactBatch::COUNT];
+  ContactBatch done;                            // of other laws
+  Contact contacts[ContactBatch::COUNT + 1];    // the last one is never complete
   int count = 0;
   std::int64_t stamp[2][ContactBatch::COUNT] = {};    // of the law whose coefficients stand there
 
@@ -81,7 +85,7 @@ struct PairGranularFused::Waiting {
 
 /* ---------------------------------------------------------------------- */
 
-PairGranularFused::PairGranularFused(LAMMPS *_lmp) : PairGranular(_lmp), laws_known(false), none_fused(true), laws_made(0) {}
+PairGranularFused::PairGranularFused(LAMMPS *_lmp) : PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), laws_made(0) {}
 
 PairGranularFused::~PairGranularFused() = default;
 
@@ -112,6 +116,13 @@ void PairGranularFused::read_laws()
   laws.clear();
   for (int m = 0; m < nmodels; m++) laws.emplace_back(models_list[m], ++laws_made);
   none_fused = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::MODEL; });
+  const int n = atom->ntypes + 1;
+  law_of.assign(n * n, nullptr);
+  for (int i = 1; i < n; i++)
+    for (int j = 1; j < n; j++) {
+      const int m = types_indices[i][j];    // nothing, where pair style hybrid has another style
+      if (m >= 0 && m < nmodels) law_of[i * n + j] = &laws[m];
+    }
   laws_known = true;
   if (!waiting && !none_fused) waiting = std::make_unique<Waiting>();
 }
@@ -137,65 +148,57 @@ void PairGranularFused::compute(int eflag, int vflag)
   }
   ev_init(eflag, vflag);
   for (int m = 0; m < nmodels; m++) models_list[m]->history_update = update->setupflag == 0;
-  if (list->inum) gather();
-  compute_waiting();
+  if (list->inum) hertz_alone ? gather<true>() : gather<false>();
 }
 
 /* ----------------------------------------------------------------------
-   contacts in the order of the list
+   Contacts in the order of the list. Which of its pairs touch is as good as random to a processor: so each pair is
+   written down, and the next one over it if it does not touch. What changes is rare.
 ------------------------------------------------------------------------- */
 
-void PairGranularFused::gather()
+template <bool HERTZ_ALONE> void PairGranularFused::gather()
 {
   const double *x = atom->x[0], *radius = atom->radius, *special = force->special_lj;
-  const int *type = atom->type, size = size_history, inum = list->inum;
-  const int *ilist = list->ilist, *numneigh = list->numneigh, *const *firstneigh = list->firstneigh;
+  const int *type = atom->type, *ilist = list->ilist, *numneigh = list->numneigh, *const *firstneigh = list->firstneigh;
   int *const *firsttouch = fix_history->firstflag;
   double *const *firsthistory = fix_history->firstvalue;
+  const int size = size_history, inum = list->inum, ntypes = atom->ntypes;
+  Contact *contacts = waiting->contacts;
+  int m = 0;
 
   for (int ii = 0; ii < inum; ii++) {
-    const int i = ilist[ii], n = numneigh[i];
-    if (n == 0) continue;
-    const int *neighbors = firstneigh[i], *indices = types_indices[type[i]];
+    const int i = ilist[ii], n = numneigh[i], *neighbors = firstneigh[i];
+    ContactLaw *const *law_with = law_of.data() + type[i] * (ntypes + 1);
     int *touch = firsttouch[i];
     double *history = firsthistory[i];
     const Vector xi = at(x, i);
     const double radius_i = radius[i];
     for (int jj = 0; jj < n; jj++, history += size) {
       const int j = neighbors[jj] & NEIGHMASK;
-      if (special[sbmask(neighbors[jj])] == 0.0) continue;
-      ContactLaw &law = laws[indices[type[j]]];
+      if (j != neighbors[jj] && special[sbmask(neighbors[jj])] == 0.0) continue;
+      ContactLaw *law = law_with[type[j]];
       const Vector dx = xi - at(x, j);
-      const double rsq = dot(dx, dx);
-      const bool touches = law.kind == ContactLaw::MODEL ? model_touches(law, i, j, touch[jj])
-                                                         : law.touch(rsq, radius_i, radius[j]);
-      if (touches) {
-        touch[jj] = 1;
-        add(law, i, j, dx, rsq, history);
-      } else if (touch[jj]) {    // else its history is 0 already
-        touch[jj] = 0;
-        std::fill_n(history, size, 0.0);
+      const double rsq = dot(dx, dx), radius_j = radius[j], radii = radius_i + radius_j;
+      contacts[m] = {law, history, i, j, 0, rsq, dx};
+      bool touches = rsq < radii * radii;
+      if (!HERTZ_ALONE && law->kind != ContactLaw::HERTZ)
+        touches = law->kind == ContactLaw::GRAIN ? law->grain_touches(rsq, radius_i, radius_j)
+                                                 : compute_model(contacts[m], touch[jj]);
+      if (touches != bool(touch[jj])) {
+        touch[jj] = touches;
+        if (!touches) forget(history);    // else it is 0 already
+      }
+      m += touches;
+      if (m == ContactBatch::COUNT) {
+        compute_waiting(m);
+        m = 0;
       }
     }
   }
+  compute_waiting(m);
 }
 
-/* ---------------------------------------------------------------------- */
-
-bool PairGranularFused::model_touches(const ContactLaw &law, int i, int j, int touched)
-{
-  Granular_NS::GranularModel *model = law.model;
-  model->xi = atom->x[i];
-  model->xj = atom->x[j];
-  model->radi = atom->radius[i];
-  model->radj = atom->radius[j];
-  model->i = i;
-  model->j = j;
-  model->itype = atom->type[i];
-  model->jtype = atom->type[j];
-  model->touch = touched;
-  return model->check_contact();
-}
+void PairGranularFused::forget(double *history) { std::fill_n(history, size_history, 0.0); }
 
 /* ----------------------------------------------------------------------
    a frozen atom does not move: the mass is the other's
@@ -204,27 +207,11 @@ bool PairGranularFused::model_touches(const ContactLaw &law, int i, int j, int t
 double PairGranularFused::effective_mass(int i, int j) const
 {
   const double mi = atom->rmass[i], mj = atom->rmass[j];
-  if (atom->mask[j] & freeze_group_bit) return mi;
-  if (atom->mask[i] & freeze_group_bit) return mj;
+  if (freeze_group_bit) {
+    if (atom->mask[j] & freeze_group_bit) return mi;
+    if (atom->mask[i] & freeze_group_bit) return mj;
+  }
   return mi * mj / (mi + mj);
-}
-
-/* ----------------------------------------------------------------------
-   a contact to those that wait; what belongs to the radii of a law is known here only
-------------------------------------------------------------------------- */
-
-void PairGranularFused::add(ContactLaw &law, int i, int j, const Vector &dx, double rsq, double *history)
-{
-  ContactBatch &batch = waiting->batch(law.kind);
-  const int k = batch.count++;
-  waiting->contacts[waiting->count++] = {&law, history, i, j, k};
-  batch.dx.set(k, dx);
-  batch.rsq[k] = rsq;
-  if (law.kind == ContactLaw::MODEL)
-    compute_model(law, i, j, history, k);
-  else if (waiting->stamp[law.kind][k] != law.stamp)    // else the last contact here had the same coefficients
-    set_coefficients(law, k);
-  if (waiting->count == ContactBatch::COUNT) compute_waiting();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -260,23 +247,38 @@ void PairGranularFused::set_coefficients(const ContactLaw &law, int k)
 void PairGranularFused::complete()
 {
   const double *v = atom->v[0], *omega = atom->omega[0], *radius = atom->radius;
-  for (int m = 0; m < waiting->count; m++) {
-    const auto [law, history, i, j, k] = waiting->contacts[m];
-    if (law->kind == ContactLaw::MODEL) continue;
-    ContactBatch &batch = waiting->batch(law->kind);
+  const int count = waiting->count;
+  for (int m = 0; m < count; m++) {
+    if (m + AHEAD < count) {
+      const Contact &later = waiting->contacts[m + AHEAD];
+      __builtin_prefetch(v + 3 * later.j);
+      __builtin_prefetch(omega + 3 * later.j);
+      __builtin_prefetch(later.history);
+    }
+    Contact &contact = waiting->contacts[m];
+    ContactLaw &law = *contact.law;
+    if (law.kind == ContactLaw::MODEL) continue;
+    const int i = contact.i, j = contact.j;
     const double ri = radius[i], rj = radius[j];
+    ContactBatch &batch = waiting->batch(law.kind);
+    const int k = contact.place = batch.count++;
+    law.use_radii(ri, rj);
+    if (waiting->stamp[law.kind][k] != law.stamp) set_coefficients(law, k);
+
     const Vector wi = at(omega, i), wj = at(omega, j);
+    batch.dx.set(k, contact.dx);
+    batch.rsq[k] = contact.rsq;
     batch.radius_i[k] = ri;
     batch.radius_j[k] = rj;
     batch.velocity.set(k, at(v, i) - at(v, j));
     batch.turning.set(k, ri * wi + rj * wj);
     batch.mass[k] = effective_mass(i, j);
-    batch.synchronized |= law->synchronized;
-    batch.shear_damped |= law->shear_damping != 0.0;
-    batch.shear.set(k, at(history + law->shear_place));
-    if (law->kind == ContactLaw::HERTZ) continue;
+    batch.synchronized |= law.synchronized;
+    batch.shear_damped |= law.shear_damping != 0.0;
+    batch.shear.set(k, at(contact.history + law.shear_place));
+    if (law.kind == ContactLaw::HERTZ) continue;
     GrainBatch &grains = waiting->grains;
-    const double *kept = history + law->neck_place;
+    const double *kept = contact.history + law.neck_place;
     grains.spin.set(k, wi - wj);
     grains.neck[k] = kept[0];
     grains.rolling.set(k, at(kept + 1));
@@ -287,29 +289,44 @@ void PairGranularFused::complete()
 }
 
 /* ----------------------------------------------------------------------
-   by LAMMPS' own functions, after model_touches()
+   a contact that LAMMPS' own functions compute, at once; returns whether it is one
 ------------------------------------------------------------------------- */
 
-void PairGranularFused::compute_model(const ContactLaw &law, int i, int j, double *history, int k)
+bool PairGranularFused::compute_model(Contact &contact, bool touched)
 {
-  Granular_NS::GranularModel *model = law.model;
+  const int i = contact.i, j = contact.j;
+  Granular_NS::GranularModel *model = contact.law->model;
+  model->xi = atom->x[i];
+  model->xj = atom->x[j];
+  model->radi = atom->radius[i];
+  model->radj = atom->radius[j];
+  model->i = i;
+  model->j = j;
+  model->itype = atom->type[i];
+  model->jtype = atom->type[j];
+  model->touch = touched;
+  if (!model->check_contact()) return false;
+
   model->meff = effective_mass(i, j);
   model->vi = atom->v[i];
   model->vj = atom->v[j];
   model->omegai = atom->omega[i];
   model->omegaj = atom->omega[j];
-  model->history = history;
+  model->history = contact.history;
   model->calculate_forces();
   ContactBatch &batch = waiting->done;
+  const int k = contact.place = batch.count++;
   batch.force.set(k, at(model->forces));
   batch.torque_i.set(k, at(model->torquesi));
   batch.torque_j.set(k, at(model->torquesj));
+  return true;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void PairGranularFused::compute_waiting()
+void PairGranularFused::compute_waiting(int count)
 {
+  waiting->count = count;
   const bool move = update->setupflag == 0;
   const double dt = models_list[0]->dt;
   complete();
@@ -355,8 +372,13 @@ void PairGranularFused::apply_forces()
 {
   double *f = atom->f[0], *torque = atom->torque[0];
   const int nlocal = atom->nlocal, newton = force->newton_pair;
-  for (int m = 0; m < waiting->count; m++) {
-    const auto [law, history, i, j, k] = waiting->contacts[m];
+  const int count = waiting->count;
+  for (int m = 0; m < count; m++) {
+    if (m + AHEAD < count) {
+      __builtin_prefetch(f + 3 * waiting->contacts[m + AHEAD].j, 1);
+      __builtin_prefetch(torque + 3 * waiting->contacts[m + AHEAD].j, 1);
+    }
+    const auto &[law, history, i, j, k, rsq, dx] = waiting->contacts[m];
     const ContactBatch &batch = waiting->batch(law->kind);
     const Vector on_i = batch.force[k];
     add_to(f + 3 * i, on_i);
@@ -366,7 +388,7 @@ void PairGranularFused::apply_forces()
       add_to(torque + 3 * j, batch.torque_j[k]);
     }
     if (evflag)
-      ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, on_i.x, on_i.y, on_i.z, batch.dx.x[k], batch.dx.y[k], batch.dx.z[k]);
+      ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, on_i.x, on_i.y, on_i.z, dx.x, dx.y, dx.z);
   }
 }
 

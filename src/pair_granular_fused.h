@@ -11,7 +11,6 @@ PairStyle(granular,PairGranularFused);
 #ifndef LMP_PAIR_GRANULAR_FUSED_H
 #define LMP_PAIR_GRANULAR_FUSED_H
 
-#include "core/geometry.h"
 #include "pair_granular.h"
 
 #include <memory>
@@ -35,23 +34,24 @@ class PairGranularFused : public PairGranular {
   double memory_usage() override;
 
  private:
-  std::vector<class ContactLaw> laws;    // one for each of models_list
-  bool laws_known, none_fused;
+  std::vector<class ContactLaw> laws;       // one for each of models_list
+  std::vector<class ContactLaw *> law_of;    // of two types
+  bool laws_known, none_fused, hertz_alone;
   int laws_made;
   void read_laws();
   bool left_to_parent() const;
 
   // contacts in the order of the neighbor list that wait to be computed together
+  struct Contact;
   struct Waiting;
   std::unique_ptr<Waiting> waiting;
-  void gather();
-  bool model_touches(const class ContactLaw &, int, int, int);
+  template <bool> void gather();
+  bool compute_model(Contact &, bool);
+  void forget(double *);
   double effective_mass(int, int) const;
-  void add(class ContactLaw &, int, int, const Dust::Vector &, double, double *);
-  void compute_model(const class ContactLaw &, int, int, double *, int);
-  void set_coefficients(const class ContactLaw &, int);
+  void compute_waiting(int);
   void complete();
-  void compute_waiting();
+  void set_coefficients(const class ContactLaw &, int);
   void keep_history();
   void apply_forces();
 };
