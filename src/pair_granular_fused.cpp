@@ -28,13 +28,6 @@ namespace {
 
 constexpr int AHEAD = 8;    // contacts, of what is fetched from memory before it is needed
 
-void add_to(double *sum, const Vector &v)
-{
-  sum[0] += v.x;
-  sum[1] += v.y;
-  sum[2] += v.z;
-}
-
 Vector at(const double *v, int i = 0) { return {v[3 * i], v[3 * i + 1], v[3 * i + 2]}; }
 
 void put(double *to, const Vector &v)
@@ -116,6 +109,7 @@ void PairGranularFused::read_laws()
   laws.clear();
   for (int m = 0; m < nmodels; m++) laws.emplace_back(models_list[m], ++laws_made);
   none_fused = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::MODEL; });
+  hertz_alone = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::HERTZ; });
   const int n = atom->ntypes + 1;
   law_of.assign(n * n, nullptr);
   for (int i = 1; i < n; i++)
@@ -246,13 +240,14 @@ void PairGranularFused::set_coefficients(const ContactLaw &law, int k)
 
 void PairGranularFused::complete()
 {
-  const double *v = atom->v[0], *omega = atom->omega[0], *radius = atom->radius;
+  const double *v = atom->v[0], *omega = atom->omega[0], *radius = atom->radius, *rmass = atom->rmass;
   const int count = waiting->count;
   for (int m = 0; m < count; m++) {
     if (m + AHEAD < count) {
       const Contact &later = waiting->contacts[m + AHEAD];
       __builtin_prefetch(v + 3 * later.j);
       __builtin_prefetch(omega + 3 * later.j);
+      __builtin_prefetch(rmass + later.j);
       __builtin_prefetch(later.history);
     }
     Contact &contact = waiting->contacts[m];
@@ -365,30 +360,37 @@ void PairGranularFused::keep_history()
 }
 
 /* ----------------------------------------------------------------------
-   in the order of the list, so that each sum is the parent's
+   In the order of the list, so that each sum is the parent's. Contacts of an atom i follow each other, and are none of
+   another's j meanwhile.
 ------------------------------------------------------------------------- */
 
 void PairGranularFused::apply_forces()
 {
   double *f = atom->f[0], *torque = atom->torque[0];
-  const int nlocal = atom->nlocal, newton = force->newton_pair;
-  const int count = waiting->count;
-  for (int m = 0; m < count; m++) {
-    if (m + AHEAD < count) {
-      __builtin_prefetch(f + 3 * waiting->contacts[m + AHEAD].j, 1);
-      __builtin_prefetch(torque + 3 * waiting->contacts[m + AHEAD].j, 1);
+  const int nlocal = atom->nlocal, newton = force->newton_pair, count = waiting->count;
+  const Contact *contacts = waiting->contacts;
+  for (int m = 0; m < count;) {
+    const int i = contacts[m].i;
+    Vector on_i = at(f, i), turning_i = at(torque, i);
+    for (; m < count && contacts[m].i == i; m++) {
+      if (m + AHEAD < count) {
+        __builtin_prefetch(f + 3 * contacts[m + AHEAD].j, 1);
+        __builtin_prefetch(torque + 3 * contacts[m + AHEAD].j, 1);
+      }
+      const int j = contacts[m].j, k = contacts[m].place;
+      const ContactBatch &batch = waiting->batch(contacts[m].law->kind);
+      const Vector pushed = batch.force[k], &dx = contacts[m].dx;
+      on_i = on_i + pushed;
+      turning_i = turning_i + batch.torque_i[k];
+      if (newton || j < nlocal) {
+        put(f + 3 * j, at(f, j) - pushed);
+        put(torque + 3 * j, at(torque, j) + batch.torque_j[k]);
+      }
+      if (evflag)
+        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, pushed.x, pushed.y, pushed.z, dx.x, dx.y, dx.z);
     }
-    const auto &[law, history, i, j, k, rsq, dx] = waiting->contacts[m];
-    const ContactBatch &batch = waiting->batch(law->kind);
-    const Vector on_i = batch.force[k];
-    add_to(f + 3 * i, on_i);
-    add_to(torque + 3 * i, batch.torque_i[k]);
-    if (newton || j < nlocal) {
-      add_to(f + 3 * j, -1.0 * on_i);
-      add_to(torque + 3 * j, batch.torque_j[k]);
-    }
-    if (evflag)
-      ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, on_i.x, on_i.y, on_i.z, dx.x, dx.y, dx.z);
+    put(f + 3 * i, on_i);
+    put(torque + 3 * i, turning_i);
   }
 }
 
