@@ -8,7 +8,6 @@
 #include "geometry.h"
 
 #include <cmath>
-#include <limits>
 
 /*! Compiled for wide vector registers too, of which the machine's widest are taken at run time. All give the same bits:
  *  each lane does what one contact alone would do, and nothing is contracted (-ffp-contract=off). */
@@ -32,7 +31,7 @@ template <int N> struct Vectors {
 /*! Contacts of two spheres that are computed together, out of place: what all laws need of them, and what they return.
  *  SI or any other consistent units; i and j are the spheres, the normal points from j to i. */
 struct ContactBatch {
-  static constexpr int COUNT = 128;
+  static constexpr int COUNT = 128, BLOCK = 32;    // blocks of lanes that skip together what none of them needs
   // a line of the cache more: one contact's numbers would all fall into the same two places of the cache
   static constexpr int SIZE = COUNT + 8;
 
@@ -67,11 +66,6 @@ struct ContactBatch {
   }
 };
 
-/*! What the tangential law returns of one contact */
-struct Shear {
-  Vector displacement, force;
-};
-
 /*! Normal in the middle of the step, or at its end where half is 0 */
 DUST_IN_LANES Vector half_step_normal(const ContactBatch &b, int k)
 {
@@ -96,49 +90,6 @@ DUST_IN_LANES Vector choose(bool first, const Vector &a, const Vector &b)
 DUST_IN_LANES Vector only_if(bool there, const Vector &a)
 {
   return {there ? a.x : 0.0, there ? a.y : 0.0, there ? a.z : 0.0};
-}
-
-/*! Friction of Mindlin and Coulomb, in the operations of LAMMPS' `tangential mindlin` (Luding, Granular Matter 10, 235
- *  (2008), Eq. 17 for the turning of the displacement).
- *
- * \param shear         tangential displacement of the last step
- * \param n             normal of the velocities
- * \param whole         that of the whole step, if the contact is synchronized
- * \param slip          relative velocity of the surfaces
- * \param stiffness     of the displacement, force/length
- * \param damping       of the velocity, force time/length
- * \param limit         largest force
- * \tparam MOVE         whether the displacement grows with the slip
- * \tparam SYNCHRONIZED whether any contact is
- * \tparam DAMPED       whether any damping is not 0 */
-template <bool MOVE, bool SYNCHRONIZED, bool DAMPED>
-DUST_IN_LANES Shear mindlin(Vector shear, const Vector &n, const Vector &whole, bool synchronized, const Vector &slip,
-                            double dt, double stiffness, double damping, double limit)
-{
-  constexpr double NEGLIGIBLE = 1.0e-10;
-  bool turns = false;
-  if (MOVE) {
-    const bool first = std::fabs(dot(shear, n)) * stiffness > NEGLIGIBLE * limit;
-    shear = choose(first, turned_into_plane(shear, n), shear);
-    shear = shear + dt * slip;
-    if (SYNCHRONIZED) {
-      // no && here, which would be a branch
-      const double least = synchronized ? NEGLIGIBLE * limit : std::numeric_limits<double>::infinity();
-      turns = std::fabs(dot(shear, whole)) * stiffness > least;
-      shear = choose(turns, turned_into_plane(shear, whole), shear);
-    }
-  }
-  Vector damped = slip;
-  // times 0, only its signs count
-  if (SYNCHRONIZED && MOVE)
-    damped = choose(turns, DAMPED ? turned_into_plane(slip, whole) : slip - dot(slip, whole) * whole, slip);
-  const Vector damper = -damping * damped;
-  const Vector force = -stiffness * shear + damper;
-
-  const double size = std::sqrt(dot(force, force));
-  const bool slides = size > limit, sheared = dot(shear, shear) != 0.0;
-  const Vector cut = only_if(sheared, (limit / size) * force);
-  return {choose(slides && sheared, (-1.0 / stiffness) * (cut - damper), shear), choose(slides, cut, force)};
 }
 
 }    // namespace Dust

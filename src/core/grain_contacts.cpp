@@ -7,6 +7,7 @@
 
 #include "hamaker.h"
 #include "jkr.h"
+#include "mindlin.h"
 #include "overlap_rate.h"
 #include "rolling.h"
 
@@ -18,6 +19,7 @@ using namespace Dust;
 
 namespace {
 
+constexpr int LANES = ContactBatch::BLOCK;
 constexpr double UNKNOWN = -1.0;    // a/a0 that Newton's method has not found
 
 /* ----------------------------------------------------------------------
@@ -78,13 +80,14 @@ void find_the_rest(GrainBatch &b)
 ------------------------------------------------------------------------- */
 
 template <bool MOVE>
-DUST_IN_LANES double overlap_rate(GrainBatch &b, int k, double overlap, double approach, double dt, double decay,
-                                  double sign, bool neck, bool fresh)
+DUST_IN_LANES double overlap_rate(GrainBatch &b, int k, double closing, double dt, double decay, double sign)
 {
   OverlapRate now = {sign * b.overlap[k], sign * b.coasting[k], sign * b.rate[k]};
-  if (!MOVE) return fresh ? -approach : now.rate;
+  const double overlap = b.now[k];
+  const bool fresh = b.neck[k] == 0.0, neck = b.radius[k] > 0.0;
+  if (!MOVE) return fresh ? -closing : now.rate;
   const double mean_then = (overlap - now.overlap) / dt;
-  const double mean = fresh ? -approach : mean_then, others = fresh ? 0.0 : mean_then - now.coasting;
+  const double mean = fresh ? -closing : mean_then, others = fresh ? 0.0 : mean_then - now.coasting;
   now.step_on(overlap, mean, others, decay * dt);
   b.overlap[k] = neck ? sign * now.overlap : 0.0;
   b.coasting[k] = neck ? sign * now.coasting : 0.0;
@@ -92,60 +95,75 @@ DUST_IN_LANES double overlap_rate(GrainBatch &b, int k, double overlap, double a
   return now.rate;
 }
 
-template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_all(GrainBatch &b, double dt)
+// which way contacts point, how their surfaces move, and the normal force; nothing is remembered of before the neck
+template <bool MOVE, bool SYNCHRONIZED>
+DUST_IN_LANES void push_apart(GrainBatch &b, int first, double dt, MindlinBlock &friction, double *normal)
 {
-  for (int k = 0; k < b.count; k++) {
-    const double R = b.effective_radius[k], overlap = b.now[k];
-    const double a0 = b.equilibrium_radius[k], Fc = b.pull_off_force[k], eta = b.damping[k], friction = b.friction[k];
-    const Vector velocity = b.velocity[k], whole = (1.0 / b.distance[k]) * b.dx[k];
+  for (int l = 0, k = first; l < LANES; l++, k++) {
+    const Vector velocity = b.velocity[k], whole = (1.0 / b.distance[k]) * b.dx[k], sheared = b.shear[k];
     const Vector n = SYNCHRONIZED ? half_step_normal(b, k) : whole;
     const double closing = dot(velocity, n);
-    const Vector slip = velocity - closing * n - cross(b.turning[k], n);
+    const double before = b.neck[k], x = b.radius[k], a = x * b.equilibrium_radius[k], eta = b.damping[k];
+    const bool neck = x > 0.0;
+    const double rate = overlap_rate<MOVE>(b, k, closing, dt, eta * x * b.equilibrium_radius[k], std::copysign(1.0, before));
 
-    const double before = b.neck[k], x = b.radius[k], a = x * a0;
-    const bool neck = x > 0.0, fresh = before == 0.0;
-    const double sign = std::copysign(1.0, before);
-    const double parting = overlap_rate<MOVE>(b, k, overlap, closing, dt, eta * x * a0, sign, neck, fresh);
-    const double approach = neck ? -parting : closing;
+    const double held = b.pull_off_force[k] * jkr_force(x), attraction = b.attraction[k];
+    const double elastic = neck ? held : attraction, damping = eta * b.mass[k] * a;
+    normal[l] = elastic + -damping * (neck ? -rate : closing);
+    const double limit = std::fabs(elastic + 2.0 * b.pull_off_force[k]) * b.friction[k];
 
-    const double held = Fc * jkr_force(x);
-    const double attraction = b.attraction[k];
-    const double elastic = neck ? held : attraction;
-    const double damping = eta * b.mass[k] * a;
-    const double normal = elastic + -damping * approach;
-    const double limit = neck ? std::fabs(elastic + 2.0 * Fc) * friction : 0.0;
+    friction.n.set(l, n);
+    friction.whole.set(l, whole);
+    friction.slip.set(l, velocity - closing * n - cross(b.turning[k], n));
+    friction.half[l] = b.half[k];
+    friction.stiffness[l] = b.shear_stiffness[k] * a;
+    friction.damping[l] = b.shear_damping[k] * damping;
+    friction.limit[l] = neck ? limit : 0.0;
+    friction.shear.set(l, only_if(MOVE ? neck & (before != 0.0) : true, sheared));
+  }
+}
 
-    // nothing is remembered of before the neck
-    const bool keeps = MOVE ? neck & !fresh : true;
-    const Vector sheared = b.shear[k], rolled = b.rolling[k];
-    const Shear shear = mindlin<MOVE, SYNCHRONIZED, DAMPED>(
-        only_if(keeps, sheared), n, whole, SYNCHRONIZED ? b.half[k] > 0.0 : false, slip, dt,
-        b.shear_stiffness[k] * a, b.shear_damping[k] * damping, limit);
-    b.shear.set(k, shear.displacement);
-    const Vector force = normal * n + shear.force;
-    b.force.set(k, force);
-
-    Vector xi = sign * only_if(keeps, rolled);
+// resistance to rolling, and all torques; friction and rolling at their limits are told
+template <bool MOVE>
+DUST_IN_LANES void turn(GrainBatch &b, int first, double dt, const MindlinBlock &friction, const double *normal)
+{
+  for (int l = 0, k = first; l < LANES; l++, k++) {
+    const Vector n = friction.n[l], tangential = friction.force[l], rolled = b.rolling[k];
+    const double before = b.neck[k], x = b.radius[k], R = b.effective_radius[k], sign = std::copysign(1.0, before);
+    const bool neck = x > 0.0, had = before != 0.0;
+    Vector xi = sign * only_if(MOVE ? neck & had : true, rolled);
     double events = 0.0;
     if (MOVE) {
-      const Rolling moved = roll_on(xi, whole, R * cross(b.spin[k], n), dt, R * b.theta_crit[k]);
+      const Rolling moved = roll_on(xi, friction.whole[l], R * cross(b.spin[k], n), dt, R * b.theta_crit[k]);
       xi = moved.displacement;
       b.rolling.set(k, only_if(neck, sign * xi));
       b.neck[k] = std::copysign(x, before);
-      // friction at its limit, as dominik/tielens sees it: no limit, no sliding
-      const double least = limit > 0.0 ? (1.0 - 1.0e-12) * limit * limit : std::numeric_limits<double>::infinity();
-      const double slides = dot(shear.force, shear.force) > least ? double(GrainBatch::SLIDE) : 0.0;
-      const double rolls = moved.gave_way ? double(GrainBatch::ROLL) : 0.0;
-      const double forms = neck ? 1.0 : 0.0, had = fresh ? 0.0 : 1.0;
-      events = (neck ? slides + rolls : 0.0) + (forms != had ? double(GrainBatch::NECK) : 0.0);
+      const double limit = friction.limit[l], square = (1.0 - 1.0e-12) * limit * limit;
+      const double least = limit > 0.0 ? square : std::numeric_limits<double>::infinity();
+      const double slides = dot(tangential, tangential) > least ? double(GrainBatch::SLIDE) : 0.0;
+      const double rolls = moved.gave_way ? double(GrainBatch::ROLL) : 0.0, both = slides + rolls;
+      events = (neck ? both : 0.0) + (neck != had ? double(GrainBatch::NECK) : 0.0);
     }
     b.events[k] = events;
 
-    const double stiffness = rolling_stiffness(Fc, a / a0) / R;
-    const Vector roll = R * cross(n, only_if(neck, -stiffness * xi));
-    const Vector torque = -1.0 * cross(n, shear.force);
+    const double a0 = b.equilibrium_radius[k], overlap = b.now[k];
+    const double stiffness = rolling_stiffness(b.pull_off_force[k], x * a0 / a0) / R;
+    const Vector roll = R * cross(n, only_if(neck, -stiffness * xi)), torque = -1.0 * cross(n, tangential);
+    b.shear.set(k, friction.shear[l]);
+    b.force.set(k, normal[l] * n + tangential);
     b.torque_i.set(k, (b.radius_i[k] - 0.5 * overlap) * torque + roll);
     b.torque_j.set(k, (b.radius_j[k] - 0.5 * overlap) * torque - roll);
+  }
+}
+
+template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_all(GrainBatch &b, double dt)
+{
+  MindlinBlock friction;
+  double normal[LANES];
+  for (int k = 0; k < b.count; k += LANES) {
+    push_apart<MOVE, SYNCHRONIZED>(b, k, dt, friction, normal);
+    friction.compute<MOVE, SYNCHRONIZED, DAMPED>(dt);
+    turn<MOVE>(b, k, dt, friction, normal);
   }
 }
 

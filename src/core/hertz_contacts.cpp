@@ -2,45 +2,61 @@
    Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
 ------------------------------------------------------------------------- */
 
-// the loop over the contacts runs in vectors: all that it calls is inlined (cmake/Sources.cmake)
+// the loops over the lanes run in vectors: all that they call is inlined (cmake/Sources.cmake)
 #include "hertz_contacts.h"
 
-#include <algorithm>
+#include "mindlin.h"
+
 #include <cmath>
 
 using namespace Dust;
 
 namespace {
 
-// the law's own numbers, in the order of LAMMPS' operations
-template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_all(HertzBatch &b, double dt)
+constexpr int LANES = ContactBatch::BLOCK;
+
+// a block of contacts from k on; those beyond the last one have the numbers of former ones
+template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_block(HertzBatch &b, int first, double dt)
 {
-  for (int k = 0; k < b.count; k++) {
+  MindlinBlock friction;
+  double overlap[LANES], normal[LANES];
+  for (int l = 0, k = first; l < LANES; l++, k++) {
     const Vector velocity = b.velocity[k];
     const double radius_i = b.radius_i[k], radius_j = b.radius_j[k], radii = radius_i + radius_j;
     const double r = std::sqrt(b.rsq[k]);
-    const double overlap = radii - r;
-    const Vector whole = (1.0 / r) * b.dx[k];
-    const Vector n = SYNCHRONIZED ? half_step_normal(b, k) : whole;
+    overlap[l] = radii - r;
+    const Vector whole = (1.0 / r) * b.dx[k], n = SYNCHRONIZED ? half_step_normal(b, k) : whole;
     const double approach = dot(velocity, n);
-    const Vector slip = velocity - approach * n - cross(b.turning[k], n);
 
-    const double a = std::sqrt(overlap * (radius_i * radius_j / radii));
-    const double elastic = b.stiffness[k] * a * overlap;
-    const double rate_if = b.damping[k] * std::sqrt(b.mass[k] * elastic / overlap);
-    const double rate = overlap > 0.0 ? rate_if : 0.0;
+    const double a = std::sqrt(overlap[l] * (radius_i * radius_j / radii));
+    const double elastic = b.stiffness[k] * a * overlap[l];
+    const double rate_if = b.damping[k] * std::sqrt(b.mass[k] * elastic / overlap[l]);
+    const double rate = overlap[l] > 0.0 ? rate_if : 0.0;
     const double damper = -rate * approach;
-    const double normal = elastic + (damper < -elastic ? -elastic : damper);
+    normal[l] = elastic + (damper < -elastic ? -elastic : damper);
 
-    const Shear shear = mindlin<MOVE, SYNCHRONIZED, DAMPED>(b.shear[k], n, whole, SYNCHRONIZED && b.half[k] > 0.0, slip, dt,
-                                                    b.shear_stiffness[k] * a, b.shear_damping[k] * rate,
-                                                    std::fabs(normal) * b.friction[k]);
-    b.shear.set(k, shear.displacement);
-    b.force.set(k, normal * n + shear.force);
-    const Vector torque = -1.0 * cross(n, shear.force);
-    b.torque_i.set(k, (radius_i - 0.5 * overlap) * torque);
-    b.torque_j.set(k, (radius_j - 0.5 * overlap) * torque);
+    friction.n.set(l, n);
+    friction.whole.set(l, whole);
+    friction.slip.set(l, velocity - approach * n - cross(b.turning[k], n));
+    friction.half[l] = b.half[k];
+    friction.stiffness[l] = b.shear_stiffness[k] * a;
+    friction.damping[l] = b.shear_damping[k] * rate;
+    friction.limit[l] = std::fabs(normal[l]) * b.friction[k];
+    friction.shear.set(l, b.shear[k]);
   }
+  friction.compute<MOVE, SYNCHRONIZED, DAMPED>(dt);
+  for (int l = 0, k = first; l < LANES; l++, k++) {
+    const Vector n = friction.n[l], tangential = friction.force[l], torque = -1.0 * cross(n, tangential);
+    b.shear.set(k, friction.shear[l]);
+    b.force.set(k, normal[l] * n + tangential);
+    b.torque_i.set(k, (b.radius_i[k] - 0.5 * overlap[l]) * torque);
+    b.torque_j.set(k, (b.radius_j[k] - 0.5 * overlap[l]) * torque);
+  }
+}
+
+template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_all(HertzBatch &b, double dt)
+{
+  for (int k = 0; k < b.count; k += LANES) compute_block<MOVE, SYNCHRONIZED, DAMPED>(b, k, dt);
 }
 
 }    // namespace
