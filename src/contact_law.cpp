@@ -78,7 +78,8 @@ ContactLaw::Kind kind_of(const GranularModel *model)
 ContactLaw::ContactLaw(GranularModel *_model, int number) :
     kind(kind_of(_model)), model(_model), normal(nullptr), stiffness(0.0), damping(0.0), shear_stiffness(0.0),
     shear_damping(0.0), friction(0.0), theta_crit(0.0), synchronized(synchronizes(_model, 0)), shear_place(0),
-    neck_place(0), stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(), last_i(-1.0), last_j(-1.0), reach2(0.0)
+    neck_place(0), stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(), last_i(-1.0), last_j(-1.0),
+    reach2(0.0)
 {
   if (kind == MODEL) return;
   damping = Damping::coefficient(model->damping_model);

@@ -30,7 +30,7 @@ class ContactLaw {
   double stiffness, damping, shear_stiffness, shear_damping, friction, theta_crit;
   bool synchronized;
   int shear_place, neck_place;    // in a contact's history
-  std::int64_t stamp;    // another one whenever any of these numbers has changed
+  std::int64_t stamp;             // another one whenever any of these numbers has changed
   // of grains, for the radii asked for last
   double effective_radius;
   Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;

@@ -16,8 +16,8 @@
 
 using namespace LAMMPS_NS;
 
-static constexpr int DIMENSIONS = 3;         // planes have the wall style of their axis
-static constexpr double SLACK = 1.0e-12;     // LAMMPS compares squares
+static constexpr int DIMENSIONS = 3;        // planes have the wall style of their axis
+static constexpr double SLACK = 1.0e-12;    // LAMMPS compares squares
 
 /* ---------------------------------------------------------------------- */
 

@@ -78,7 +78,10 @@ struct PairGranularFused::Waiting {
 
 /* ---------------------------------------------------------------------- */
 
-PairGranularFused::PairGranularFused(LAMMPS *_lmp) : PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), laws_made(0) {}
+PairGranularFused::PairGranularFused(LAMMPS *_lmp) :
+    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), laws_made(0)
+{
+}
 
 PairGranularFused::~PairGranularFused() = default;
 
@@ -386,8 +389,7 @@ void PairGranularFused::apply_forces()
         put(f + 3 * j, at(f, j) - pushed);
         put(torque + 3 * j, at(torque, j) + batch.torque_j[k]);
       }
-      if (evflag)
-        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, pushed.x, pushed.y, pushed.z, dx.x, dx.y, dx.z);
+      if (evflag) ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, pushed.x, pushed.y, pushed.z, dx.x, dx.y, dx.z);
     }
     put(f + 3 * i, on_i);
     put(torque + 3 * i, turning_i);

@@ -34,7 +34,7 @@ class PairGranularFused : public PairGranular {
   double memory_usage() override;
 
  private:
-  std::vector<class ContactLaw> laws;       // one for each of models_list
+  std::vector<class ContactLaw> laws;        // one for each of models_list
   std::vector<class ContactLaw *> law_of;    // of two types
   bool laws_known, none_fused, hertz_alone;
   int laws_made;

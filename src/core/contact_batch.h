@@ -10,7 +10,8 @@
 #include <cmath>
 
 /*! Compiled for wide vector registers too, of which the machine's widest are taken at run time. All give the same bits:
- *  each lane does what one contact alone would do, and nothing is contracted (-ffp-contract=off). */
+ *  each lane does what one contact alone would do, and nothing is contracted (-ffp-contract=off). Only for functions of
+ *  one file: clang makes of one that a header declares without it a single one, for the widest registers. */
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(DUST_ONE_TARGET)
 #define DUST_LANES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -31,8 +32,8 @@ template <int N> struct Vectors {
 /*! Contacts of two spheres that are computed together, out of place: what all laws need of them, and what they return.
  *  SI or any other consistent units; i and j are the spheres, the normal points from j to i. */
 struct ContactBatch {
-  static constexpr int COUNT = 128, BLOCK = 32;    // blocks of lanes that skip together what none of them needs
-  // a line of the cache more: one contact's numbers would all fall into the same two places of the cache
+  static constexpr int COUNT = 64, BLOCK = 32;    // blocks of lanes that skip together what none of them needs
+  // a line of the cache more: one contact's numbers would all fall into the same places of the cache
   static constexpr int SIZE = COUNT + 8;
 
   int count = 0;
@@ -40,21 +41,21 @@ struct ContactBatch {
   bool shear_damped = false;    // some have a shear_damping
 
   // geometry and motion
-  Vectors<SIZE> dx;                      // x_i - x_j
-  double rsq[SIZE];                      // its square
+  Vectors<SIZE> dx;    // x_i - x_j
+  double rsq[SIZE];    // its square
   double radius_i[SIZE], radius_j[SIZE];
-  Vectors<SIZE> velocity;                // v_i - v_j
-  Vectors<SIZE> turning;                 // R_i omega_i + R_j omega_j
-  double mass[SIZE];                     // effective
-  double half[SIZE];                     // half a time step where the normal is the half step's, else 0
+  Vectors<SIZE> velocity;    // v_i - v_j
+  Vectors<SIZE> turning;     // R_i omega_i + R_j omega_j
+  double mass[SIZE];         // effective
+  double half[SIZE];         // half a time step where the normal is the half step's, else 0
 
   // coefficients of the laws
-  double damping[SIZE];                  // of the normal motion, in the units of the law
-  double shear_stiffness[SIZE];          // Mindlin's, over the contact radius
-  double shear_damping[SIZE];            // over that of the normal motion
+  double damping[SIZE];            // of the normal motion, in the units of the law
+  double shear_stiffness[SIZE];    // Mindlin's, over the contact radius
+  double shear_damping[SIZE];      // over that of the normal motion
   double friction[SIZE];
 
-  Vectors<SIZE> shear;                   // tangential displacement of the last step, changed
+  Vectors<SIZE> shear;    // tangential displacement of the last step, changed
 
   // of i; the force on j is the opposite one
   Vectors<SIZE> force, torque_i, torque_j;
@@ -71,15 +72,6 @@ DUST_IN_LANES Vector half_step_normal(const ContactBatch &b, int k)
 {
   const Vector middle = b.dx[k] - b.half[k] * b.velocity[k];
   return (1.0 / std::sqrt(dot(middle, middle))) * middle;
-}
-
-/*! v in the plane with the normal n, as long as before */
-DUST_IN_LANES Vector turned_into_plane(const Vector &v, const Vector &n)
-{
-  const double length = std::sqrt(dot(v, v));
-  const Vector in_plane = v - dot(v, n) * n;
-  const double left = std::sqrt(dot(in_plane, in_plane));
-  return (left > 0.0 ? length / left : 0.0) * in_plane;
 }
 
 DUST_IN_LANES Vector choose(bool first, const Vector &a, const Vector &b)

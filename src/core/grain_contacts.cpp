@@ -105,7 +105,8 @@ DUST_IN_LANES void push_apart(GrainBatch &b, int first, double dt, MindlinBlock 
     const double closing = dot(velocity, n);
     const double before = b.neck[k], x = b.radius[k], a = x * b.equilibrium_radius[k], eta = b.damping[k];
     const bool neck = x > 0.0;
-    const double rate = overlap_rate<MOVE>(b, k, closing, dt, eta * x * b.equilibrium_radius[k], std::copysign(1.0, before));
+    const double rate =
+        overlap_rate<MOVE>(b, k, closing, dt, eta * x * b.equilibrium_radius[k], std::copysign(1.0, before));
 
     const double held = b.pull_off_force[k] * jkr_force(x), attraction = b.attraction[k];
     const double elastic = neck ? held : attraction, damping = eta * b.mass[k] * a;

@@ -16,7 +16,8 @@ namespace {
 constexpr int LANES = ContactBatch::BLOCK;
 
 // a block of contacts from k on; those beyond the last one have the numbers of former ones
-template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_block(HertzBatch &b, int first, double dt)
+template <bool MOVE, bool SYNCHRONIZED, bool DAMPED>
+DUST_IN_LANES void compute_block(HertzBatch &b, int first, double dt)
 {
   MindlinBlock friction;
   double overlap[LANES], normal[LANES];
@@ -61,7 +62,7 @@ template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_
 
 }    // namespace
 
-DUST_LANES void Dust::compute_forces(HertzBatch &batch, double dt, bool move)
+DUST_LANES static void compute(HertzBatch &batch, double dt, bool move)
 {
   if (!move)
     compute_all<false, true, true>(batch, dt);
@@ -72,3 +73,5 @@ DUST_LANES void Dust::compute_forces(HertzBatch &batch, double dt, bool move)
   else
     compute_all<true, true, true>(batch, dt);
 }
+
+void Dust::compute_forces(HertzBatch &batch, double dt, bool move) { compute(batch, dt, move); }

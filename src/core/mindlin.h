@@ -48,8 +48,8 @@ struct MindlinBlock {
  private:
   static constexpr double NEGLIGIBLE = 1.0e-10;
 
-  Vectors<LANES> damper;                // velocity that is damped, then its force
-  double turns[LANES], size[LANES];     // 1 for those that turn; force before it is cut
+  Vectors<LANES> damper;               // velocity that is damped, then its force
+  double turns[LANES], size[LANES];    // 1 for those that turn; force before it is cut
 
   // whether any displacement leans out of its plane
   DUST_IN_LANES bool lean()

@@ -28,10 +28,7 @@ struct OverlapRate {
    *  \param mean   rate in the middle of the step before, by other means, length/time
    *  \param decay  damping force over m_eff and rate, 1/time
    *  \param dt     time step */
-  void begin(double first, double mean, double decay, double dt)
-  {
-    step_on(first, mean, 0.0, decay * dt);
-  }
+  void begin(double first, double mean, double decay, double dt) { step_on(first, mean, 0.0, decay * dt); }
 
   /*! Each further step. \param next overlap, length */
   void advance(double next, double decay, double dt)

@@ -82,12 +82,14 @@ std::string shaken_box(const std::string &pairs, const std::string &more = "", c
   return "units si\natom_style sphere\nboundary p p f\nnewton " + newton +
          "\ncomm_modify vel yes\nregion box block 0 8.4e-3 0 8.4e-3 0 8.4e-3\ncreate_box 3 box\n"
          "lattice sc 1.4e-3 origin 0.5 0.5 0.5\ncreate_atoms 1 box\nset type 1 type/fraction 2 0.4 17\n"
-         "set type 2 type/fraction 3 0.3 18\nvariable size atom random(1.2e-3,1.5e-3,5)\nset group all diameter v_size\n"
+         "set type 2 type/fraction 3 0.3 18\nvariable size atom random(1.2e-3,1.5e-3,5)\nset group all diameter "
+         "v_size\n"
          "set group all density 7700\nvariable a atom random(-1,1,6)\nvariable b atom random(-1,1,7)\n"
          "variable c atom random(-1,1,8)\nvelocity all set v_a v_b v_c\nvariable d atom 500*random(-1,1,9)\n"
          "set group all omega v_d v_d v_d\ntimestep 1e-6\nneighbor 2e-4 bin\n" +
          pairs +
-         "\nfix move all nve/sphere\nfix floor all wall/gran granular hertz/material 2.1e8 0.7 0.3 tangential mindlin NULL "
+         "\nfix move all nve/sphere\nfix floor all wall/gran granular hertz/material 2.1e8 0.7 0.3 tangential mindlin "
+         "NULL "
          "0.0 0.3 damping coeff_restitution/limited zplane 0.0 8.4e-3\nthermo 1\n" +
          more;
 }
@@ -170,7 +172,8 @@ TEST(PairGranularFused, OtherLawsInTheirPlaces)
   const std::string jkr = " jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3 rolling sds 1e3 0.0 0.1";
   const std::string no_rolling = " jkr/vdw 1e7 2e5 0.3 1e-13 1e-7 tangential mindlin NULL 0.0 0.3 damping viscoelastic";
   for (const std::string &other : {tsuji, rescaled, jkr, no_rolling}) {
-    EXPECT_EQ(differences(shaken_box(GRANULAR + steel() + "\npair_coeff 2 *" + other + "\npair_coeff 1 3" + sticky()), RUNS),
+    EXPECT_EQ(differences(shaken_box(GRANULAR + steel() + "\npair_coeff 2 *" + other + "\npair_coeff 1 3" + sticky()),
+                          RUNS),
               0);
     EXPECT_EQ(differences(shaken_box(GRANULAR + other), RUNS), 0);
   }
@@ -207,10 +210,14 @@ TEST(FixWallGranNear, Planes)
   EXPECT_EQ(differences(shaken_box(pair, wall + sticky() + sides), RUNS), 0);
   EXPECT_EQ(differences(shaken_box(pair, wall + sticky("0.0", "jkr/vdw/cut", "5e-6") + sides + " contacts"), RUNS), 0);
   EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " contacts"), RUNS), 0);
-  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + " zplane 0.1e-3 NULL\nfix top all wall/gran granular" + steel() + " zplane NULL 8.3e-3"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + " zplane 0.1e-3 NULL\nfix top all wall/gran granular" +
+                                             steel() + " zplane NULL 8.3e-3"),
+                        RUNS),
+            0);
   EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " wiggle z 1e-4 1e-3"), RUNS), 0);
   EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " shear x 0.5"), RUNS), 0);
-  EXPECT_EQ(differences(shaken_box(pair, wall + " jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3" + sides), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + " jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3" + sides), RUNS),
+            0);
 }
 
 TEST(FixWallGranNear, Regions)
@@ -218,7 +225,8 @@ TEST(FixWallGranNear, Regions)
   const auto wall = [](const std::string &region, const std::string &law) {
     return shaken_box(GRANULAR + steel(), "variable way equal 1e-4*sin(5e3*time)\nvariable turn equal 300*time\n"
                                           "region wall " +
-                                              region + "\nfix wall all wall/gran/region granular" + law + "region wall");
+                                              region + "\nfix wall all wall/gran/region granular" + law +
+                                              "region wall");
   };
   for (const std::string &law : {steel(), sticky()}) {
     EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box", law), RUNS), 0);
@@ -228,10 +236,12 @@ TEST(FixWallGranNear, Regions)
     EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box", law), RUNS), 0);
     // moving, turning about an axis of their own and another one
     EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box move v_way NULL v_way", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0", law),
+    EXPECT_EQ(differences(wall("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0",
+                               law),
                           RUNS),
               0);
-    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law), RUNS),
+    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law),
+                          RUNS),
               0);
     // what is left to LAMMPS
     EXPECT_EQ(differences(wall("cone z 4.2e-3 4.2e-3 2e-3 4e-3 1e-3 8e-3 units box open 2", law), RUNS), 0);
