@@ -54,6 +54,14 @@ template <typename Model> auto synchronizes(const Model *model, int) -> decltype
 
 template <typename Model> bool synchronizes(const Model *, long) { return false; }
 
+template <typename Model> constexpr auto can_synchronize(const Model *model, int)
+    -> decltype(bool(model->synchronized_verlet))
+{
+  return true;
+}
+
+template <typename Model> constexpr bool can_synchronize(const Model *, long) { return false; }
+
 ContactLaw::Kind kind_of(const GranularModel *model)
 {
   const bool mindlin = is<GranSubModTangentialMindlin>(model->tangential_model);
@@ -72,6 +80,10 @@ ContactLaw::Kind kind_of(const GranularModel *model)
 }
 
 }    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+bool ContactLaw::cuts_by_inverse() { return !can_synchronize(static_cast<const GranularModel *>(nullptr), 0); }
 
 /* ---------------------------------------------------------------------- */
 

@@ -24,6 +24,9 @@ class ContactLaw {
   // \param number  another one for each law of a process
   ContactLaw(Granular_NS::GranularModel *, int number);
 
+  // whether this LAMMPS cuts friction as MindlinBlock::by_inverse says
+  static bool cuts_by_inverse();
+
   Kind kind;
   Granular_NS::GranularModel *model;
   Granular_NS::GranSubModNormalJKRVdW *normal;    // of grains

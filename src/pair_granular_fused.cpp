@@ -121,7 +121,9 @@ void PairGranularFused::read_laws()
       if (m >= 0 && m < nmodels) law_of[i * n + j] = &laws[m];
     }
   laws_known = true;
-  if (!waiting && !none_fused) waiting = std::make_unique<Waiting>();
+  if (waiting || none_fused) return;
+  waiting = std::make_unique<Waiting>();
+  waiting->hertz.by_inverse = waiting->grains.by_inverse = ContactLaw::cuts_by_inverse();
 }
 
 /* ----------------------------------------------------------------------

@@ -39,6 +39,7 @@ struct ContactBatch {
   int count = 0;
   bool synchronized = false;    // some of the contacts have half > 0
   bool shear_damped = false;    // some have a shear_damping
+  bool by_inverse = false;      // as MindlinBlock's
 
   // geometry and motion
   Vectors<SIZE> dx;    // x_i - x_j

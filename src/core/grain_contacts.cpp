@@ -160,6 +160,7 @@ DUST_IN_LANES void turn(GrainBatch &b, int first, double dt, const MindlinBlock 
 template <bool MOVE, bool SYNCHRONIZED, bool DAMPED> DUST_IN_LANES void compute_all(GrainBatch &b, double dt)
 {
   MindlinBlock friction;
+  friction.by_inverse = b.by_inverse;
   double normal[LANES];
   for (int k = 0; k < b.count; k += LANES) {
     push_apart<MOVE, SYNCHRONIZED>(b, k, dt, friction, normal);

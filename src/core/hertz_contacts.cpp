@@ -20,6 +20,7 @@ template <bool MOVE, bool SYNCHRONIZED, bool DAMPED>
 DUST_IN_LANES void compute_block(HertzBatch &b, int first, double dt)
 {
   MindlinBlock friction;
+  friction.by_inverse = b.by_inverse;
   double overlap[LANES], normal[LANES];
   for (int l = 0, k = first; l < LANES; l++, k++) {
     const Vector velocity = b.velocity[k];

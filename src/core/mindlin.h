@@ -26,6 +26,7 @@ struct MindlinBlock {
   double limit[LANES];        // largest force
   Vectors<LANES> shear;       // tangential displacement, changed
   Vectors<LANES> force;       // returned
+  bool by_inverse = false;    // LAMMPS 4Feb2025 multiplies by the inverse of a force where 4Jul2026 divides by it
 
   /*! \tparam MOVE         whether the displacement grows with the slip
    *  \tparam SYNCHRONIZED whether any half is above 0
@@ -112,7 +113,8 @@ struct MindlinBlock {
     for (int l = 0; l < LANES; l++) {
       const Vector before = shear[l], pushes = force[l];
       const bool slides = size[l] > limit[l], sheared = dot(before, before) != 0.0;
-      const Vector at_limit = only_if(sheared, (limit[l] / size[l]) * pushes);
+      const double by_force = limit[l] / size[l], times_inverse = limit[l] * (1.0 / size[l]);
+      const Vector at_limit = only_if(sheared, (by_inverse ? times_inverse : by_force) * pushes);
       const Vector kept = choose(sheared, (-1.0 / stiffness[l]) * (at_limit - damper[l]), before);
       shear.set(l, choose(slides, kept, before));
       force.set(l, choose(slides, at_limit, pushes));
