@@ -110,6 +110,10 @@ ContactLaw::ContactLaw(GranularModel *_model, int number) :
 
 /* ---------------------------------------------------------------------- */
 
+bool ContactLaw::heats() const { return model->heat_model->name != "none"; }
+
+/* ---------------------------------------------------------------------- */
+
 void ContactLaw::find_adhesion(double radius_i, double radius_j)
 {
   stamp++;

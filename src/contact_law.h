@@ -38,6 +38,8 @@ class ContactLaw {
   double effective_radius;
   Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;
 
+  bool heats() const;
+
   // whether spheres of these radii are within reach of each other, of grains
   bool grain_touches(double rsq, double radius_i, double radius_j)
   {

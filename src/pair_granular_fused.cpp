@@ -55,8 +55,8 @@ struct PairGranularFused::Contact {
 struct PairGranularFused::Waiting {
   Dust::HertzBatch hertz;
   GrainBatch grains;
-  ContactBatch done;                            // of other laws
-  Contact contacts[ContactBatch::COUNT + 1];    // the last one is never complete
+  ContactBatch done;    // of other laws
+  Contact contacts[ContactBatch::COUNT];
   int count = 0;
   std::int64_t stamp[2][ContactBatch::COUNT] = {};    // of the law whose coefficients stand there
 
@@ -79,7 +79,7 @@ struct PairGranularFused::Waiting {
 /* ---------------------------------------------------------------------- */
 
 PairGranularFused::PairGranularFused(LAMMPS *_lmp) :
-    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), laws_made(0)
+    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), laws_made(0)
 {
 }
 
@@ -113,6 +113,7 @@ void PairGranularFused::read_laws()
   for (int m = 0; m < nmodels; m++) laws.emplace_back(models_list[m], ++laws_made);
   none_fused = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::MODEL; });
   hertz_alone = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::HERTZ; });
+  heats = std::any_of(laws.begin(), laws.end(), [](const auto &law) { return law.heats(); });
   const int n = atom->ntypes + 1;
   law_of.assign(n * n, nullptr);
   for (int i = 1; i < n; i++)
@@ -132,7 +133,7 @@ void PairGranularFused::read_laws()
 
 bool PairGranularFused::left_to_parent() const
 {
-  if (none_fused || !use_history || heat_flag || fix_rigid) return true;
+  if (none_fused || !use_history || heats || fix_rigid) return true;
   return std::any_of(force->special_lj, force->special_lj + 4, [](double s) { return s != 0.0 && s != 1.0; });
 }
 
@@ -161,7 +162,8 @@ template <bool HERTZ_ALONE> void PairGranularFused::gather()
   const int *type = atom->type, *ilist = list->ilist, *numneigh = list->numneigh, *const *firstneigh = list->firstneigh;
   int *const *firsttouch = fix_history->firstflag;
   double *const *firsthistory = fix_history->firstvalue;
-  const int size = size_history, inum = list->inum, ntypes = atom->ntypes;
+  const int size = get_size_history(), inum = list->inum, ntypes = atom->ntypes;
+  waiting->clear();    // an error may have left some
   Contact *contacts = waiting->contacts;
   int m = 0;
 
@@ -197,7 +199,7 @@ template <bool HERTZ_ALONE> void PairGranularFused::gather()
   compute_waiting(m);
 }
 
-void PairGranularFused::forget(double *history) { std::fill_n(history, size_history, 0.0); }
+void PairGranularFused::forget(double *history) { std::fill_n(history, get_size_history(), 0.0); }
 
 /* ----------------------------------------------------------------------
    a frozen atom does not move: the mass is the other's

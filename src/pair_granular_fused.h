@@ -36,7 +36,7 @@ class PairGranularFused : public PairGranular {
  private:
   std::vector<class ContactLaw> laws;        // one for each of models_list
   std::vector<class ContactLaw *> law_of;    // of two types
-  bool laws_known, none_fused, hertz_alone;
+  bool laws_known, none_fused, hertz_alone, heats;
   int laws_made;
   void read_laws();
   bool left_to_parent() const;
