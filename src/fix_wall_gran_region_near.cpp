@@ -93,8 +93,8 @@ FixWallGranRegionNear::Look FixWallGranRegionNear::look_at(int i, const Vector &
 }
 
 /* ----------------------------------------------------------------------
-   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that is far it
-   clears its history.
+   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that is far
+   it clears its history.
 ------------------------------------------------------------------------- */
 
 void FixWallGranRegionNear::find_near()

@@ -49,8 +49,8 @@ class GranSubModNormalJKRVdW : public GranSubModNormal {
     double pull_off_force, equilibrium_radius, breaking_gap, reach;
   };
   Adhesion adhesion(double Reff);
-  // where a contact's history keeps its neck, three values of rolling and three of the overlap's rate; makes LAMMPS copy
-  // all of them when i and j change places
+  // where a contact's history keeps its neck, three values of rolling and three of the overlap's rate; makes LAMMPS
+  // copy all of them when i and j change places
   int place_in_history();
 
   LastEvents last_events;    // slide and roll by the rolling model

@@ -1,5 +1,5 @@
-// Contacts of carriers computed many at once: each as if it were alone, and what a single one must be. That the bits are
-// LAMMPS' own stands in unittest/styles/test_pair_granular_fused.cpp.
+// Contacts of carriers computed many at once: each as if it were alone, and what a single one must be. That the bits
+// are LAMMPS' own stands in unittest/styles/test_pair_granular_fused.cpp.
 
 #include "damping.h"
 #include "hertz_contacts.h"
