@@ -329,8 +329,9 @@ bool PairGranularFused::compute_model(Contact &contact, bool touched)
 void PairGranularFused::compute_waiting(int count)
 {
   waiting->count = count;
+  if (count == 0) return;
   const bool move = update->setupflag == 0;
-  const double dt = models_list[0]->dt;
+  const double dt = waiting->contacts[0].law->model->dt;    // a model that no pair has may have none
   complete();
   if (waiting->hertz.count) Dust::compute_forces(waiting->hertz, dt, move);
   if (waiting->grains.count) Dust::compute_forces(waiting->grains, dt, move);

@@ -163,6 +163,13 @@ TEST(PairGranularFused, GrainsAmongCarriers)
             0);
 }
 
+// a deck that thinks better of it: a model that no pair of types has
+TEST(PairGranularFused, ModelsThatNoPairHas)
+{
+  EXPECT_EQ(differences(shaken_box(GRANULAR + sticky() + "\npair_coeff * *" + steel()), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel() + "\npair_coeff * *" + sticky()), RUNS), 0);
+}
+
 // laws that are LAMMPS' own or have other parts, between the others
 TEST(PairGranularFused, OtherLawsInTheirPlaces)
 {
