@@ -7,8 +7,8 @@ CPU time (user and system) of whole processes; variants run in turn, so that wha
 and medians over the repeats are given, of times and of ratios within a repeat. `--before` names the folder of a plugin
 that was built earlier: the same models by the code of then.
 
-bed: 20,000 carriers that lie still on a floor, periodic to the sides, for 500 steps. They settle once, by our plugin, in
-two minutes; `--bed FILE` keeps where they lie, or reads it if it is there. LAMMPS' granular has its own
+bed: 20,000 carriers that lie still on a floor, periodic to the sides, for 500 steps. They settle once, by our plugin,
+in two minutes; `--bed FILE` keeps where they lie, or reads it if it is there. LAMMPS' granular has its own
 coeff_restitution with limit_damping; gran/hertz/history and LIGGGHTS' hertz with tangential history have the same
 stiffness and friction. Their damping is another, which in a bed at rest costs the same.
 resolved: in.impact.resolved, in free flight at rest, where each grain has one contact, and whole. Beside the processes,
