@@ -3,8 +3,10 @@
 
 include("${CMAKE_CURRENT_LIST_DIR}/Sources.cmake")
 
-# LAMMPS collects style headers in global lists, to which RegisterStyles() appends; ours are in them from the start
-foreach(kind gran_sub_mod fix compute command)
+# LAMMPS collects style headers in global lists, to which RegisterStyles() appends; ours are in them from the start. It
+# sorts them by name, and of two styles of one name the last one counts: pair_granular_fused.h comes after
+# pair_granular.h.
+foreach(kind gran_sub_mod pair fix compute command)
   string(TOUPPER ${kind} list)
   set_property(GLOBAL APPEND PROPERTY ${list} ${DUST_${kind}_HEADERS})
 endforeach()
@@ -16,6 +18,8 @@ function(add_dust_to_lammps)
   # our warnings are about our files, not about the headers of LAMMPS that they include
   set_property(SOURCE ${DUST_STYLE_SOURCES} APPEND PROPERTY
                COMPILE_OPTIONS "-isystem${LAMMPS_SOURCE_DIR}" "-isystem${LAMMPS_SOURCE_DIR}/GRANULAR")
+  file(GLOB granular "${LAMMPS_SOURCE_DIR}/GRANULAR/gran*.cpp" "${LAMMPS_SOURCE_DIR}/GRANULAR/pair_granular.cpp")
+  set_property(SOURCE ${granular} APPEND PROPERTY COMPILE_OPTIONS ${DUST_CONTRACTION})
   if(PKG_GRANSURF)
     set_property(SOURCE ${DUST_STYLE_SOURCES} APPEND PROPERTY COMPILE_OPTIONS "-isystem${LAMMPS_SOURCE_DIR}/GRANSURF")
   endif()

@@ -50,6 +50,7 @@ file(GLOB granular CONFIGURE_DEPENDS "${granular_dir}/gran_sub_mod*.cpp")
 foreach(name granular_model ${granular_pairs} ${granular_fixes})
   list(APPEND granular "${granular_dir}/${name}.cpp")
 endforeach()
+set_property(SOURCE ${granular} APPEND PROPERTY COMPILE_OPTIONS ${DUST_CONTRACTION})
 file(GLOB sub_models CONFIGURE_DEPENDS "${granular_dir}/gran_sub_mod_*.h")
 
 # surfaces of triangles (STL files), since 4Jul2026: what they use beyond this is in LAMMPS' core, so that the host
@@ -63,11 +64,14 @@ if(IS_DIRECTORY "${surface_dir}")
   list(APPEND granular_fixes fix_surface_global fix_surface_local)
   target_include_directories(lammps_headers SYSTEM INTERFACE "${surface_dir}")
 endif()
+# ours, children of them, have their names
+list(REMOVE_ITEM granular_pairs pair_granular)
+list(REMOVE_ITEM granular_fixes fix_wall_gran fix_wall_gran_region)
 list(TRANSFORM granular_pairs APPEND .h)
 list(TRANSFORM granular_fixes APPEND .h)
 
 write_includes(style_gran_sub_mod.h ${sub_models} ${DUST_gran_sub_mod_HEADERS})
-write_includes(dust_style_pair.h ${granular_pairs})
+write_includes(dust_style_pair.h ${granular_pairs} ${DUST_pair_HEADERS})
 write_includes(dust_style_fix.h ${granular_fixes} ${DUST_fix_HEADERS})
 write_includes(dust_style_compute.h ${DUST_compute_HEADERS})
 write_includes(dust_style_command.h ${DUST_command_HEADERS})

@@ -150,6 +150,20 @@ void GranSubModNormalJKRVdW::use_radius(double Reff)
   }
 }
 
+/* ---------------------------------------------------------------------- */
+
+GranSubModNormalJKRVdW::Adhesion GranSubModNormalJKRVdW::adhesion(double Reff)
+{
+  if (Reff != last_Reff) use_radius(Reff);
+  return {hamaker, z0, range, Fc, a0, delta_c, largest_gap};
+}
+
+int GranSubModNormalJKRVdW::place_in_history()
+{
+  if (laid_out != neck_place()) lay_out_history();
+  return laid_out;
+}
+
 /* ----------------------------------------------------------------------
    as far as either attraction can reach; LAMMPS has not set the history yet, so the neck is not known here
 ------------------------------------------------------------------------- */
@@ -196,9 +210,8 @@ void GranSubModNormalJKRVdW::check_skin(double reach)
 double GranSubModNormalJKRVdW::calculate_contact_radius()
 {
   if (gm->Reff != last_Reff) use_radius(gm->Reff);
-  if (laid_out != neck_place()) lay_out_history();
   // x of the last step, negated when i and j have changed places
-  double &kept = gm->history[laid_out];
+  double &kept = gm->history[place_in_history()];
   neck = gm->delta >= 0.0 || (kept != 0.0 && gm->delta > -delta_c);
   x = neck ? Dust::jkr_contact_radius(gm->delta / delta_c, kept) : 0.0;
 

@@ -43,6 +43,16 @@ class GranSubModNormalJKRVdW : public GranSubModNormal {
   double pull_off_force() const { return Fc; }
   double equilibrium_contact_radius() const { return a0; }
 
+  // what a contact's law has of the materials, and of the effective radius
+  struct Adhesion {
+    double hamaker, z0, range;
+    double pull_off_force, equilibrium_radius, breaking_gap, reach;
+  };
+  Adhesion adhesion(double Reff);
+  // where a contact's history keeps its neck, three values of rolling and three of the overlap's rate; makes LAMMPS
+  // copy all of them when i and j change places
+  int place_in_history();
+
   LastEvents last_events;    // slide and roll by the rolling model
 
   // of a contact with this history: 0 without a neck, else a/a0 or -a/a0; LAMMPS negates all history when i and j

@@ -89,6 +89,8 @@ bool GranSubModRollingDominikTielens::slides() const
   return limit > 0.0 && Dust::dot(gm->fs, gm->fs) > (1.0 - 1.0e-12) * limit * limit;
 }
 
+static Dust::Vector three(const double *v) { return {v[0], v[1], v[2]}; }
+
 /* ----------------------------------------------------------------------
    M = -4 F_c (a/a0)^(3/2) xi; LAMMPS makes the moment R_eff n x fr of a rolling force fr
 ------------------------------------------------------------------------- */
@@ -100,16 +102,22 @@ void GranSubModRollingDominikTielens::calculate_forces()
     std::fill_n(fr, 3, 0.0);
     return;
   }
-  double *history = normal->rolling_in(gm->history), xi[3];
+  double *history = normal->rolling_in(gm->history);
   const double sign = std::copysign(1.0, normal->neck_in(gm->history));
-  for (int d = 0; d < 3; d++) xi[d] = sign * history[d];
+  Dust::Vector xi = sign * three(history);
   if (gm->history_update) {
-    if (Dust::roll_on(xi, full_step_normal(gm, 0), gm->vrl, gm->dt, gm->Reff * theta_crit))
-      normal->last_events.roll = update->ntimestep;
+    const Dust::Rolling moved =
+        Dust::roll_on(xi, three(full_step_normal(gm, 0)), three(gm->vrl), gm->dt, gm->Reff * theta_crit);
+    xi = moved.displacement;
+    if (moved.gave_way) normal->last_events.roll = update->ntimestep;
     if (slides()) normal->last_events.slide = update->ntimestep;
-    for (int d = 0; d < 3; d++) history[d] = sign * xi[d];
+    history[0] = sign * xi.x;
+    history[1] = sign * xi.y;
+    history[2] = sign * xi.z;
   }
   const double x = gm->contact_radius / normal->equilibrium_contact_radius();
   const double k = Dust::rolling_stiffness(normal->pull_off_force(), x) / gm->Reff;
-  for (int d = 0; d < 3; d++) fr[d] = -k * xi[d];
+  fr[0] = -k * xi.x;
+  fr[1] = -k * xi.y;
+  fr[2] = -k * xi.z;
 }

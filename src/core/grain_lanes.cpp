@@ -5,8 +5,9 @@
 // compiled as surface_motion.cpp
 #include "grain_lanes.h"
 
+#include "geometry.h"
 #include "jkr.h"
-#include "vector.h"
+#include "lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +15,6 @@
 #include <numeric>
 
 using namespace Dust;
-
-// the same for processors with longer vectors, which give the same bits; all that the loop over grains calls is inlined
-#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__)
-#define DUST_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define DUST_VECTORS
-#endif
-#define DUST_INLINE __attribute__((always_inline))
 
 namespace {
 
@@ -44,15 +37,15 @@ struct Step {
 };
 
 // yes and no are 1 and 0, and one of two is picked by sums: the compiler makes branches of questions, but no vectors
-DUST_INLINE inline double pick(double first, double a, double b) { return first * a + (1.0 - first) * b; }
-DUST_INLINE inline Vector pick(double first, const Vector &a, const Vector &b) { return first * a + (1.0 - first) * b; }
-DUST_INLINE inline double is_below(double a, double b) { return a < b ? 1.0 : 0.0; }
+DUST_IN_LANES double pick(double first, double a, double b) { return first * a + (1.0 - first) * b; }
+DUST_IN_LANES Vector pick(double first, const Vector &a, const Vector &b) { return first * a + (1.0 - first) * b; }
+DUST_IN_LANES double is_below(double a, double b) { return a < b ? 1.0 : 0.0; }
 
 // y at an overlap in delta_c: a step of y^4 = D/(2 6^(1/3)) + 2/3 y from the last one, and one of Newton's
 struct Branch {
   double y, slope;    // dF/dD in F_c, delta_c
 };
-DUST_INLINE inline Branch follow_branch(double overlap, double y)
+DUST_IN_LANES Branch follow_branch(double overlap, double y)
 {
   const double fourth = overlap / (2.0 * ROOT_6) + 2.0 / 3.0 * y;
   y = std::sqrt(std::sqrt(fourth > 0.0 ? fourth : 0.0));
@@ -70,7 +63,7 @@ struct Contact {
 };
 
 // outward: all that pulls along n, but for the contact itself
-DUST_INLINE inline Contact normal_motion(State &s, const Fixed &g, const Step &step, double outward, double vn)
+DUST_IN_LANES Contact normal_motion(State &s, const Fixed &g, const Step &step, double outward, double vn)
 {
   const Branch branch = follow_branch(-s.gap * g.inv_breaking_gap, s.y);
   const double y = branch.y, y2 = y * y, y3 = y2 * y;
@@ -84,7 +77,7 @@ DUST_INLINE inline Contact normal_motion(State &s, const Fixed &g, const Step &s
 }
 
 // all of v and Omega: to the end of the step
-DUST_INLINE inline void kick(State &s, const Fixed &g, const Step &step, double shell)
+DUST_IN_LANES void kick(State &s, const Fixed &g, const Step &step, double shell)
 {
   const Vector n = s.n, r = shell * n;
   const Vector t = s.push - step.a - cross(step.alpha, r) - cross(step.omega, cross(step.omega, r) + 2.0 * s.v);
@@ -102,7 +95,7 @@ DUST_INLINE inline void kick(State &s, const Fixed &g, const Step &step, double 
 }
 
 // to the middle of the next step: held grains along the surface, others straight on
-DUST_INLINE inline void drift(State &s, const Fixed &g, const Step &step, double shell)
+DUST_IN_LANES void drift(State &s, const Fixed &g, const Step &step, double shell)
 {
   const Vector n = s.n;
   const double vn = dot(s.v, n), time = step.h;
@@ -123,7 +116,7 @@ DUST_INLINE inline void drift(State &s, const Fixed &g, const Step &step, double
 }
 
 // whether a grain only rocks on its pivot, and hardly swings in its contact
-DUST_INLINE inline double is_calm(const State &s, const Fixed &g, const Step &step)
+DUST_IN_LANES double is_calm(const State &s, const Fixed &g, const Step &step)
 {
   const double y3 = s.y * s.y * s.y, rocking = 5.0 / 7.0 * g.rolling * y3 * g.radius;
   const double vn = dot(s.v, s.n);
@@ -262,7 +255,7 @@ void GrainLanes::find_flying(std::vector<int> &found) const
 /* ---------------------------------------------------------------------- */
 
 // the loop over the grains runs in vectors: all that it calls is inlined
-DUST_VECTORS void GrainLanes::advance(Block &b, const CarrierStep &carrier, bool settle)
+DUST_LANES void GrainLanes::advance(Block &b, const CarrierStep &carrier, bool settle)
 {
   const double *a = carrier.motion.acceleration, *w = carrier.motion.spin, *alpha = carrier.motion.angular_acceleration;
   const Step step = {carrier.h,

@@ -35,13 +35,11 @@ double Dust::jkr_contact_radius(double d, double guess)
 {
   const double D = d / (2.0 * Dust::ROOT_6);
   double y = std::sqrt(std::fabs(guess));
-  for (int k = 0; k < 4; k++) {
-    const double y3 = y * y * y;
-    const double slope = 4.0 * y3 - 2.0 / 3.0;
-    if (!(slope > 0.05)) break;    // near the end of the branch or beyond it
-    const double step = (y * (y3 - 2.0 / 3.0) - D) / slope;
-    y -= step;
-    if (std::fabs(step) < 1.0e-9 * y) return y * y;    // what is left is quadratic in it
+  for (int k = 0; k < JKR_STEPS; k++) {
+    const JKRStep newton = jkr_newton(y, D);
+    if (!(newton.slope > JKR_FLAT)) break;
+    y -= newton.step;
+    if (std::fabs(newton.step) < JKR_SETTLED * y) return y * y;
   }
   return jkr_contact_radius(d);
 }

@@ -52,6 +52,21 @@ constexpr double NECK_WORK = 0.9355;
  * \return   x, from 6^(-2/3) on */
 double jkr_contact_radius(double d);
 
+/*! A step of Newton's method for y = sqrt(a/a0), where y^4 - (2/3) y = depth.
+ *  \param depth  delta/(2 6^(1/3) delta_c) */
+struct JKRStep {
+  double slope, step;
+};
+inline JKRStep jkr_newton(double y, double depth)
+{
+  const double y3 = y * y * y;
+  const double slope = 4.0 * y3 - 2.0 / 3.0;
+  return {slope, (y * (y3 - 2.0 / 3.0) - depth) / slope};
+}
+constexpr int JKR_STEPS = 4;              //!< of which the last ones are seldom needed
+constexpr double JKR_FLAT = 0.05;         //!< a slope near the end of the branch or beyond it
+constexpr double JKR_SETTLED = 1.0e-9;    //!< a step over y; what is left is quadratic in it
+
 /*! The same by Newton's method from a guess near the answer, such as x of a step before; in closed form if that fails.
  *  \param guess  any value; its sign does not matter */
 double jkr_contact_radius(double d, double guess);

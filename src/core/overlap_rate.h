@@ -28,23 +28,22 @@ struct OverlapRate {
    *  \param mean   rate in the middle of the step before, by other means, length/time
    *  \param decay  damping force over m_eff and rate, 1/time
    *  \param dt     time step */
-  void begin(double first, double mean, double decay, double dt)
-  {
-    overlap = first;
-    step_on(mean, 0.0, decay * dt);
-  }
+  void begin(double first, double mean, double decay, double dt) { step_on(first, mean, 0.0, decay * dt); }
 
   /*! Each further step. \param next overlap, length */
   void advance(double next, double decay, double dt)
   {
     const double mean = (next - overlap) / dt;
-    overlap = next;
-    step_on(mean, mean - coasting, decay * dt);
+    step_on(next, mean, mean - coasting, decay * dt);
   }
 
- private:
-  void step_on(double mean, double others, double damped)
+  /*! What both are.
+   *  \param mean    u
+   *  \param others  o, 0 in the first step
+   *  \param damped  decay dt */
+  void step_on(double next, double mean, double others, double damped)
   {
+    overlap = next;
     rate = (mean + 0.5 * others) / (1.0 + 0.5 * damped);
     coasting = mean - damped * rate;
   }

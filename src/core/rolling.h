@@ -11,24 +11,30 @@
 
 namespace Dust {
 
-/*! Moves the rolling displacement xi of an adhesive contact on: Dominik & Tielens, Philos. Mag. A 72, 783 (1995).
+/*! Rolling displacement xi of an adhesive contact after a step, and whether its pivot gave way */
+struct Rolling {
+  Vector displacement;
+  bool gave_way;
+};
+
+/*! Moves the rolling displacement on: Dominik & Tielens, Philos. Mag. A 72, 783 (1995).
  *
  * xi is a vector in the tangential plane. It turns with the contact, keeping its length, grows with the rolling
  * velocity and is held at xi_crit, where the pivot gives way.
- * \param xi        rolling displacement of the last step, changed
+ * \param xi        rolling displacement of the last step
  * \param n         unit normal now
  * \param velocity  rolling velocity, in the tangential plane
- * \param limit     xi_crit = R_12 theta_crit
- * \return          whether the pivot gave way */
-inline bool roll_on(double *xi, const double *n, const double *velocity, double dt, double limit)
+ * \param limit     xi_crit = R_12 theta_crit */
+inline Rolling roll_on(const Vector &xi, const Vector &n, const Vector &velocity, double dt, double limit)
 {
   const double along = dot(xi, n), size2 = dot(xi, xi), left = size2 - along * along;
   const double turned = left > 0.0 ? std::sqrt(size2 / left) : 0.0;
-  for (int d = 0; d < 3; d++) xi[d] = turned * (xi[d] - along * n[d]) + dt * velocity[d];
-  const double size = std::sqrt(dot(xi, xi));
-  if (!(size > limit)) return false;
-  for (int d = 0; d < 3; d++) xi[d] *= limit / size;
-  return true;
+  const Vector moved = turned * (xi - along * n) + dt * velocity;
+  const double size = std::sqrt(dot(moved, moved));
+  const bool gives_way = size > limit;
+  const double shortened = limit / size;
+  const Vector held = shortened * moved;
+  return {{gives_way ? held.x : moved.x, gives_way ? held.y : moved.y, gives_way ? held.z : moved.z}, gives_way};
 }
 
 /*! Rolling stiffness k of the moment M = k xi of resistance, 4 F_c (a/a0)^(3/2)

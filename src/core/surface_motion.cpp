@@ -6,7 +6,6 @@
 #include "surface_motion.h"
 
 #include "geometry.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,62 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CONTACT_LAW_H
+#define DUST_CONTACT_LAW_H
+
+#include "gran_sub_mod_dust_normal.h"
+
+#include <cstdint>
+
+namespace LAMMPS_NS {
+
+// what fused loops need of a granular model: which loop it is for, and its coefficients
+
+class ContactLaw {
+ public:
+  enum Kind {
+    HERTZ,    // hertz or hertz/material, mindlin, coeff_restitution/limited
+    GRAIN,    // jkr/vdw, mindlin, viscoelastic, dominik/tielens
+    MODEL     // any other: LAMMPS' own functions, contact by contact
+  };
+
+  // \param number  another one for each law of a process
+  ContactLaw(Granular_NS::GranularModel *, int number);
+
+  // whether this LAMMPS cuts friction as MindlinBlock::by_inverse says
+  static bool cuts_by_inverse();
+
+  Kind kind;
+  Granular_NS::GranularModel *model;
+  Granular_NS::GranSubModNormalJKRVdW *normal;    // of grains
+  double stiffness, damping, shear_stiffness, shear_damping, friction, theta_crit;
+  bool synchronized;
+  int shear_place, neck_place;    // in a contact's history
+  std::int64_t stamp;             // another one whenever any of these numbers has changed
+  // of grains, for the radii asked for last
+  double effective_radius;
+  Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;
+
+  bool heats() const;
+
+  // whether spheres of these radii are within reach of each other, of grains
+  bool grain_touches(double rsq, double radius_i, double radius_j)
+  {
+    use_radii(radius_i, radius_j);
+    return rsq < reach2;
+  }
+
+  void use_radii(double radius_i, double radius_j)
+  {
+    if (kind == GRAIN && (radius_i != last_i || radius_j != last_j)) find_adhesion(radius_i, radius_j);
+  }
+
+ private:
+  double last_i, last_j, reach2;
+  void find_adhesion(double, double);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

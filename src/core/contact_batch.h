@@ -1,0 +1,80 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifndef DUST_CORE_CONTACT_BATCH_H
+#define DUST_CORE_CONTACT_BATCH_H
+
+#include "geometry.h"
+#include "lanes.h"
+
+#include <cmath>
+
+namespace Dust {
+
+/*! Vectors of many contacts, component by component */
+template <int N> struct Vectors {
+  double x[N], y[N], z[N];
+  void set(int k, const Vector &v) { x[k] = v.x, y[k] = v.y, z[k] = v.z; }
+  Vector operator[](int k) const { return {x[k], y[k], z[k]}; }
+};
+
+/*! Contacts of two spheres that are computed together, out of place: what all laws need of them, and what they return.
+ *  SI or any other consistent units; i and j are the spheres, the normal points from j to i. */
+struct ContactBatch {
+  static constexpr int COUNT = 64, BLOCK = 32;    // blocks of lanes that skip together what none of them needs
+  // a line of the cache more: one contact's numbers would all fall into the same places of the cache
+  static constexpr int SIZE = COUNT + 8;
+
+  int count = 0;
+  bool synchronized = false;    // some of the contacts have half > 0
+  bool shear_damped = false;    // some have a shear_damping
+  bool by_inverse = false;      // as MindlinBlock's
+
+  // geometry and motion
+  Vectors<SIZE> dx;    // x_i - x_j
+  double rsq[SIZE];    // its square
+  double radius_i[SIZE], radius_j[SIZE];
+  Vectors<SIZE> velocity;    // v_i - v_j
+  Vectors<SIZE> turning;     // R_i omega_i + R_j omega_j
+  double mass[SIZE];         // effective
+  double half[SIZE];         // half a time step where the normal is the half step's, else 0
+
+  // coefficients of the laws
+  double damping[SIZE];            // of the normal motion, in the units of the law
+  double shear_stiffness[SIZE];    // Mindlin's, over the contact radius
+  double shear_damping[SIZE];      // over that of the normal motion
+  double friction[SIZE];
+
+  Vectors<SIZE> shear;    // tangential displacement of the last step, changed
+
+  // of i; the force on j is the opposite one
+  Vectors<SIZE> force, torque_i, torque_j;
+
+  void clear()
+  {
+    count = 0;
+    synchronized = shear_damped = false;
+  }
+};
+
+/*! Normal in the middle of the step, or at its end where half is 0 */
+DUST_IN_LANES Vector half_step_normal(const ContactBatch &b, int k)
+{
+  const Vector middle = b.dx[k] - b.half[k] * b.velocity[k];
+  return (1.0 / std::sqrt(dot(middle, middle))) * middle;
+}
+
+DUST_IN_LANES Vector choose(bool first, const Vector &a, const Vector &b)
+{
+  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
+}
+
+DUST_IN_LANES Vector only_if(bool there, const Vector &a)
+{
+  return {there ? a.x : 0.0, there ? a.y : 0.0, there ? a.z : 0.0};
+}
+
+}    // namespace Dust
+
+#endif

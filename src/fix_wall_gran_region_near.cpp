@@ -1,0 +1,137 @@
+/* ----------------------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#include "fix_wall_gran_region_near.h"
+
+#include "atoms_shown.h"
+#include "gran_sub_mod_dust_normal.h"
+
+#include "atom.h"
+#include "granular_model.h"
+#include "neighbor.h"
+#include "region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+using namespace LAMMPS_NS;
+using Dust::Vector;
+
+namespace {
+
+// whose contacts are those of the surface's nearest points: no open faces, no parts of other regions
+constexpr const char *SHAPES[] = {"block", "cylinder", "sphere", "plane"};
+
+// whether LAMMPS tells how a region has moved; 4Feb2025 does not
+template <class Moving> auto see(Moving *region, Vector &x, int)
+    -> decltype(region->inverse_transform(x.x, x.y, x.z), true)
+{
+  region->inverse_transform(x.x, x.y, x.z);
+  return true;
+}
+
+template <class Moving> bool see(Moving *, Vector &, long) { return false; }
+
+// how a region sees the box: as it was before it moved and turned
+class Frame {
+ public:
+  explicit Frame(Region *region) : origin(seen(region, {0.0, 0.0, 0.0}))
+  {
+    axes[0] = seen(region, {1.0, 0.0, 0.0}) - origin;
+    axes[1] = seen(region, {0.0, 1.0, 0.0}) - origin;
+    axes[2] = seen(region, {0.0, 0.0, 1.0}) - origin;
+  }
+  Vector of(const double *x) const { return origin + x[0] * axes[0] + x[1] * axes[1] + x[2] * axes[2]; }
+
+ private:
+  Vector origin, axes[3];
+  static Vector seen(Region *region, Vector x)
+  {
+    if (region->dynamic) see(region, x, 0);
+    return x;
+  }
+};
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+FixWallGranRegionNear::FixWallGranRegionNear(LAMMPS *_lmp, int narg, char **arg) :
+    FixWallGranRegion(_lmp, narg, arg), skips(false)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranRegionNear::init()
+{
+  FixWallGranRegion::init();
+  const bool adhesive = dynamic_cast<const Granular_NS::GranSubModNormalJKRVdW *>(model->normal_model);
+  const bool simple = std::any_of(std::begin(SHAPES), std::end(SHAPES),
+                                  [this](const char *shape) { return std::string(shape) == region->style; });
+  Vector origin = {0.0, 0.0, 0.0};
+  const bool still = !region->dynamic || see(region, origin, 0);
+  skips =
+      simple && still && !region->openflag && !region->varshape && !heat_flag && (adhesive || !model->beyond_contact);
+  looks.clear();
+}
+
+/* ----------------------------------------------------------------------
+   an atom off the region is near: LAMMPS looks at it again when it comes back. LAMMPS knows no contact on the axis of a
+   cylinder: look beside the place.
+------------------------------------------------------------------------- */
+
+FixWallGranRegionNear::Look FixWallGranRegionNear::look_at(int i, const Vector &place, double margin)
+{
+  constexpr double BESIDE = 1.0e-3;
+  const double *x = atom->x[i], radius = atom->radius[i], off = BESIDE * margin;
+  const double reach = radius + model->pulloff_distance(radius, 0.0) + margin + 2.0 * off;
+  const bool near = !region->match(x[0], x[1], x[2]) || region->surface(x[0] + off, x[1] + off, x[2] + off, reach) > 0;
+  return {place, radius, near};
+}
+
+/* ----------------------------------------------------------------------
+   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that is far
+   it clears its history.
+------------------------------------------------------------------------- */
+
+void FixWallGranRegionNear::find_near()
+{
+  if (region->dynamic_check()) region->prematch();
+  const int nlocal = atom->nlocal, *mask = atom->mask;
+  const bool anew = neighbor->ago == 0 || static_cast<int>(looks.size()) != nlocal;
+  const double margin = 0.5 * neighbor->skin;
+  const Frame frame(region);
+  looks.resize(nlocal);
+  groups.resize(nlocal);
+  for (int i = 0; i < nlocal; i++) {
+    groups[i] = 0;
+    if (!(mask[i] & groupbit)) continue;
+    const Vector place = frame.of(atom->x[i]), moved = place - looks[i].place;
+    const bool looks_now = anew || !(dot(moved, moved) < margin * margin) || atom->radius[i] != looks[i].radius;
+    if (looks_now) looks[i] = look_at(i, place, margin);
+    if (looks_now || looks[i].near) groups[i] = mask[i];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranRegionNear::post_force(int vflag)
+{
+  if (!skips) {
+    FixWallGranRegion::post_force(vflag);
+    return;
+  }
+  find_near();
+  const AtomsShown shown(atom, groups);
+  FixWallGranRegion::post_force(vflag);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranRegionNear::memory_usage()
+{
+  return FixWallGranRegion::memory_usage() + double(looks.size() * sizeof(Look) + groups.size() * sizeof(int));
+}

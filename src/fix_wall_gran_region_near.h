@@ -1,0 +1,49 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   Package DUST: dust detachment from impacting carriers. GPL-2.0, as LAMMPS.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(wall/gran/region,FixWallGranRegionNear);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_WALL_GRAN_REGION_NEAR_H
+#define LMP_FIX_WALL_GRAN_REGION_NEAR_H
+
+#include "core/geometry.h"
+#include "fix_wall_gran_region.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/* ----------------------------------------------------------------------
+   LAMMPS' fix wall/gran/region under its own name, with the same bits: it looks only at atoms that may touch the wall
+------------------------------------------------------------------------- */
+
+class FixWallGranRegionNear : public FixWallGranRegion {
+ public:
+  FixWallGranRegionNear(class LAMMPS *, int, char **);
+  void init() override;
+  void post_force(int) override;
+  double memory_usage() override;
+
+ private:
+  // where an atom was, as the region sees it, when its distance was looked at, and whether it was near
+  struct Look {
+    Dust::Vector place;
+    double radius;
+    bool near;
+  };
+  std::vector<Look> looks;
+  std::vector<int> groups;    // of the atoms near the wall, 0 of all others
+  bool skips;                 // whether atoms may be skipped
+  Look look_at(int, const Dust::Vector &, double);
+  void find_near();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,256 @@
+// The pair force that computes many contacts at once, and walls that look only at atoms near them, against LAMMPS' own,
+// which they replace: every bit of what moves atoms and of what is put out must be the same.
+
+#include "deck.h"
+
+#include "fix_wall_gran_region.h"
+#include "force.h"
+#include "lammps.h"
+#include "modify.h"
+#include "pair_granular.h"
+
+#include <cstdint>
+#include <cstring>
+#include <typeinfo>
+
+using LAMMPS_NS::LAMMPS;
+using LAMMPS_NS::PairGranular;
+
+namespace {
+
+LAMMPS_NS::Pair *own_pair(LAMMPS *lmp) { return new PairGranular(lmp); }
+
+template <class Wall> LAMMPS_NS::Fix *own_wall(LAMMPS *lmp, int narg, char **arg) { return new Wall(lmp, narg, arg); }
+
+void use_lammps_own(LAMMPS *lmp)
+{
+  lmp->force->pair_map->at("granular") = &own_pair;
+  lmp->modify->fix_map->at("wall/gran") = &own_wall<LAMMPS_NS::FixWallGran>;
+  lmp->modify->fix_map->at("wall/gran/region") = &own_wall<LAMMPS_NS::FixWallGranRegion>;
+}
+
+// all numbers of a state, bit by bit
+using State = std::vector<std::uint64_t>;
+
+void put(State &state, const double *values, int n)
+{
+  for (int k = 0; k < n; k++) {
+    std::uint64_t bits;
+    std::memcpy(&bits, values + k, sizeof(bits));
+    state.push_back(bits);
+  }
+}
+
+State state_of(const Deck &deck)
+{
+  State state;
+  for (int id = 1; id <= static_cast<int>(lammps_get_natoms(deck.lmp)); id++)
+    for (const char *name : {"x", "v", "omega", "f", "torque"}) put(state, deck.atom(name, id), 3);
+  put(state, static_cast<double *>(lammps_extract_compute(deck.lmp, "thermo_press", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR)),
+      6);
+  return state;
+}
+
+// number of values that differ after each of the runs, made by LAMMPS' own loop and by ours
+int differences(const std::string &set_up, const std::vector<std::string> &runs)
+{
+  std::vector<State> states[2];
+  for (const bool ours : {false, true}) {
+    Deck deck;
+    auto *lmp = static_cast<LAMMPS *>(deck.lmp);
+    if (!ours) use_lammps_own(lmp);
+    deck(set_up);
+    for (const std::string &run : runs) {
+      deck(run);
+      states[ours].push_back(state_of(deck));
+    }
+    const LAMMPS_NS::Pair *pair = lmp->force->pair_match("granular", 1);
+    EXPECT_TRUE(pair && (typeid(*pair) != typeid(PairGranular)) == ours);
+  }
+  int different = 0;
+  for (std::size_t run = 0; run < runs.size(); run++) {
+    EXPECT_EQ(states[0][run].size(), states[1][run].size());
+    for (std::size_t k = 0; k < states[0][run].size(); k++) different += states[0][run][k] != states[1][run][k];
+    EXPECT_NE(states[0][run], states[0][run ? run - 1 : run + 1]) << "nothing has moved";
+  }
+  return different;
+}
+
+// 216 spheres of three types and many sizes, overlapping from the start, that fly and spin in all directions
+std::string shaken_box(const std::string &pairs, const std::string &more = "", const std::string &newton = "off")
+{
+  return "units si\natom_style sphere\nboundary p p f\nnewton " + newton +
+         "\ncomm_modify vel yes\nregion box block 0 8.4e-3 0 8.4e-3 0 8.4e-3\ncreate_box 3 box\n"
+         "lattice sc 1.4e-3 origin 0.5 0.5 0.5\ncreate_atoms 1 box\nset type 1 type/fraction 2 0.4 17\n"
+         "set type 2 type/fraction 3 0.3 18\nvariable size atom random(1.2e-3,1.5e-3,5)\nset group all diameter "
+         "v_size\n"
+         "set group all density 7700\nvariable a atom random(-1,1,6)\nvariable b atom random(-1,1,7)\n"
+         "variable c atom random(-1,1,8)\nvelocity all set v_a v_b v_c\nvariable d atom 500*random(-1,1,9)\n"
+         "set group all omega v_d v_d v_d\ntimestep 1e-6\nneighbor 2e-4 bin\n" +
+         pairs +
+         "\nfix move all nve/sphere\nfix floor all wall/gran granular hertz/material 2.1e8 0.7 0.3 tangential mindlin "
+         "NULL "
+         "0.0 0.3 damping coeff_restitution/limited zplane 0.0 8.4e-3\nthermo 1\n" +
+         more;
+}
+
+std::string steel(const std::string &modulus = "2.1e8", const std::string &shear_damping = "0.0",
+                  const std::string &friction = "0.3")
+{
+  return " hertz/material " + modulus + " 0.7 0.3 tangential mindlin NULL " + shear_damping + " " + friction +
+         " damping coeff_restitution/limited ";
+}
+
+// soft enough for the time step: adhesion is felt over some steps
+std::string sticky(const std::string &shear_damping = "0.0", const std::string &name = "jkr/vdw",
+                   const std::string &end = "")
+{
+  return " " + name + " 1e7 2e5 0.3 1e-13 1e-7 " + end + " tangential mindlin NULL " + shear_damping +
+         " 0.3 damping viscoelastic rolling dominik/tielens 0.05 ";
+}
+
+const std::string GRANULAR = "pair_style granular\npair_coeff * *";
+const std::vector<std::string> RUNS = {"run 0", "run 1", "run 300", "run 0", "run 200"};
+const std::string VERLET = LAMMPS_VERSION_NUMBER >= 20260704 ? "synchronized_verlet" : "";
+
+}    // namespace
+
+TEST(PairGranularFused, Carriers)
+{
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel()), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel(), "", "on"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel("2.1e8", "0.5") + "limit_damping"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel("2.1e8", "0.0", "0.0")), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + " hertz 1.5e8 0.5 tangential mindlin 1e8 0.2 0.4 damping "
+                                              "coeff_restitution/limited"),
+                        RUNS),
+            0);
+}
+
+TEST(PairGranularFused, CarriersOfManyMaterials)
+{
+  EXPECT_EQ(differences(shaken_box("pair_style granular\npair_coeff 1 1" + steel() + "\npair_coeff 2 2" +
+                                   steel("1e8", "0.3", "0.1") + "\npair_coeff 3 3" + steel("3e8", "0.0", "0.0")),
+                        RUNS),
+            0);
+}
+
+TEST(PairGranularFused, Synchronized)
+{
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel() + VERLET), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel("2.1e8", "0.5") + VERLET), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + sticky() + VERLET), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + sticky("0.5") + VERLET), RUNS), 0);
+  // only some of the contacts
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel("2.1e8", "0.5") + VERLET + "\npair_coeff * 2" + steel() +
+                                   "\npair_coeff 1 3" + sticky() + VERLET + "\npair_coeff 3 3" + sticky("0.5")),
+                        RUNS),
+            0);
+}
+
+TEST(PairGranularFused, Grains)
+{
+  EXPECT_EQ(differences(shaken_box(GRANULAR + sticky()), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + sticky("0.4"), "", "on"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + sticky("0.0", "jkr/vdw/cut", "5e-6")), RUNS), 0);
+}
+
+TEST(PairGranularFused, GrainsAmongCarriers)
+{
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel() + "\npair_coeff 1 2" + sticky() + "\npair_coeff 2*3 2*3" +
+                                   sticky("0.2", "jkr/vdw/cut", "5e-6")),
+                        RUNS),
+            0);
+}
+
+// a deck that thinks better of it: a model that no pair of types has
+TEST(PairGranularFused, ModelsThatNoPairHas)
+{
+  EXPECT_EQ(differences(shaken_box(GRANULAR + sticky() + "\npair_coeff * *" + steel()), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel() + "\npair_coeff * *" + sticky()), RUNS), 0);
+}
+
+// laws that are LAMMPS' own or have other parts, between the others
+TEST(PairGranularFused, OtherLawsInTheirPlaces)
+{
+  const std::string tsuji = " hertz/material 2e8 0.6 0.3 tangential mindlin NULL 0.1 0.3 damping tsuji";
+  const std::string rescaled =
+      " hertz/material 2e8 0.6 0.3 tangential mindlin_rescale/force NULL 0.1 0.3 damping coeff_restitution/limited";
+  const std::string jkr = " jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3 rolling sds 1e3 0.0 0.1";
+  const std::string no_rolling = " jkr/vdw 1e7 2e5 0.3 1e-13 1e-7 tangential mindlin NULL 0.0 0.3 damping viscoelastic";
+  for (const std::string &other : {tsuji, rescaled, jkr, no_rolling}) {
+    EXPECT_EQ(differences(shaken_box(GRANULAR + steel() + "\npair_coeff 2 *" + other + "\npair_coeff 1 3" + sticky()),
+                          RUNS),
+              0);
+    EXPECT_EQ(differences(shaken_box(GRANULAR + other), RUNS), 0);
+  }
+}
+
+TEST(PairGranularFused, FrozenAtomsAndOtherPairStyles)
+{
+  const std::string both = GRANULAR + steel() + "\npair_coeff 2 *" + sticky();
+  EXPECT_EQ(differences(shaken_box(both, "group still type 3\nfix still still freeze"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box("pair_style hybrid granular zero 1.5e-3\npair_coeff * * granular" + steel() +
+                                   "\npair_coeff 2 3 zero\npair_coeff 3 3 granular" + sticky()),
+                        RUNS),
+            0);
+}
+
+// when atoms change places, stresses are asked for, or the time step changes
+TEST(PairGranularFused, BetweenSteps)
+{
+  const std::string both = GRANULAR + steel() + "\npair_coeff 2 *" + sticky();
+  EXPECT_EQ(differences(shaken_box(both, "atom_modify sort 10 1e-3\nneigh_modify every 1 check no"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(both, "compute stress all stress/atom NULL\ncompute sum all reduce sum "
+                                         "c_stress[1]\nthermo_style custom step press c_sum"),
+                        RUNS),
+            0);
+  EXPECT_EQ(differences(shaken_box(both), {"run 100", "timestep 5e-7\nrun 100 pre no", "timestep 2e-6\nrun 100"}), 0);
+  EXPECT_EQ(differences(shaken_box(both), {"run 100", "pair_coeff 1 1" + steel("1e8", "0.2") + "\nrun 100"}), 0);
+}
+
+// near enough to be looked at again, out of reach, on the other side, from one wall to the other
+TEST(FixWallGranNear, Planes)
+{
+  const std::string pair = GRANULAR + steel();
+  const std::string wall = "unfix floor\nfix floor all wall/gran granular", sides = " zplane 0.0 8.4e-3";
+  EXPECT_EQ(differences(shaken_box(pair, wall + sticky() + sides), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + sticky("0.0", "jkr/vdw/cut", "5e-6") + sides + " contacts"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " contacts"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + " zplane 0.1e-3 NULL\nfix top all wall/gran granular" +
+                                             steel() + " zplane NULL 8.3e-3"),
+                        RUNS),
+            0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " wiggle z 1e-4 1e-3"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " shear x 0.5"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair, wall + " jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3" + sides), RUNS),
+            0);
+}
+
+TEST(FixWallGranNear, Regions)
+{
+  const auto wall = [](const std::string &region, const std::string &law) {
+    return shaken_box(GRANULAR + steel(), "variable way equal 1e-4*sin(5e3*time)\nvariable turn equal 300*time\n"
+                                          "region wall " +
+                                              region + "\nfix wall all wall/gran/region granular" + law +
+                                              "region wall");
+  };
+  for (const std::string &law : {steel(), sticky()}) {
+    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("block 3e-3 5e-3 3e-3 5e-3 3e-3 5e-3 side out units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("cylinder z 4.2e-3 4.2e-3 4e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("sphere 4.2e-3 4.2e-3 4.2e-3 4e-3 units box", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box", law), RUNS), 0);
+    // moving, turning about an axis of their own and another one
+    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box move v_way NULL v_way", law), RUNS), 0);
+    EXPECT_EQ(differences(wall("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0",
+                               law),
+                          RUNS),
+              0);
+    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law),
+                          RUNS),
+              0);
+    // what is left to LAMMPS
+    EXPECT_EQ(differences(wall("cone z 4.2e-3 4.2e-3 2e-3 4e-3 1e-3 8e-3 units box open 2", law), RUNS), 0);
+  }
+}
