@@ -159,7 +159,7 @@ TEST(FixDustDetachMeet, EmittedGrainsCarryWhatTheCarrierLoses)
     return sum;
   };
   const double whole = momentum()[3] + deck.global(DetachVector::DETACHED_MASS + 1);
-  for (int k = 0; k < 30 && deck.global(DetachVector::FOLLOWED + 1) > 0.0; k++) deck("run 10000 post no");
+  for (int k = 0; k < 60 && deck.global(DetachVector::FOLLOWED + 1) > 0.0; k++) deck("run 10000 post no");
   const std::vector<double> after = momentum();
   EXPECT_EQ(deck.global(DetachVector::FOLLOWED + 1), 0.0);
   // all grains that have left are atoms by now, but those that are gone through the bottom of the box
