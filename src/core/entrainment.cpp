@@ -139,13 +139,19 @@ void Entrainment::look_who_is_released()
 void Entrainment::link()
 {
   if (flying.empty()) return;
-  const auto is_joined = [this](int bit) { return grains.held(bit) || linked[bit]; };
+  chains.clear();
+  for (const GrainPairs::Neck &neck : pairs.necks()) {
+    const bool first = grains.held(neck.first), second = grains.held(neck.second);
+    if (first != second)
+      linked[first ? neck.second : neck.first] = 1;
+    else if (!first)
+      chains.push_back(neck);
+  }
   for (bool more = true; more;) {
     more = false;
-    for (const GrainPairs::Neck &neck : pairs.necks()) {
-      const bool first = is_joined(neck.first);
-      if (first == is_joined(neck.second)) continue;
-      linked[first ? neck.second : neck.first] = 1;
+    for (const GrainPairs::Neck &neck : chains) {
+      if (linked[neck.first] == linked[neck.second]) continue;
+      linked[neck.first] = linked[neck.second] = 1;
       more = true;
     }
   }

@@ -94,6 +94,7 @@ class Entrainment {
   // of the present step
   std::vector<int> flying, changing;
   std::vector<char> linked;    // flying grains: whether others hold them to the carrier
+  std::vector<GrainPairs::Neck> chains;    // necks of two that fly
   // of the collision, as long as it is followed
   const Retrospect *past_motion;
   Quaternion frame;

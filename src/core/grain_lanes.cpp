@@ -229,43 +229,13 @@ void GrainLanes::compact()
   bits = std::move(order);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   a step of grains side by side; returns the square of the largest speed
+------------------------------------------------------------------------- */
 
-void GrainLanes::advance(const CarrierStep &step, bool settle)
+DUST_LANES static double advance(GrainLanes::Block &b, const Step &step, double settles)
 {
-  fastest = 0.0;
-  for (size_t k = 0; k < blocks.size(); k++) {
-    if (!blocks[k].busy) continue;
-    advance(blocks[k], step, settle);
-    show_places(blocks[k], &bits[k * WIDTH]);
-  }
-  fastest = std::sqrt(fastest);
-}
-
-void GrainLanes::find_flying(std::vector<int> &found) const
-{
-  found.clear();
-  for (size_t k = 0; k < blocks.size(); k++) {
-    if (!blocks[k].flies) continue;
-    for (int i = 0; i < WIDTH; i++)
-      if (blocks[k].awake[i] > 0.0 && blocks[k].held[i] == 0.0) found.push_back(bits[k * WIDTH + i]);
-  }
-}
-
-/* ---------------------------------------------------------------------- */
-
-// the loop over the grains runs in vectors: all that it calls is inlined
-DUST_LANES void GrainLanes::advance(Block &b, const CarrierStep &carrier, bool settle)
-{
-  const double *a = carrier.motion.acceleration, *w = carrier.motion.spin, *alpha = carrier.motion.angular_acceleration;
-  const Step step = {carrier.h,
-                     1.0 / carrier.h,
-                     {a[0], a[1], a[2]},
-                     {w[0], w[1], w[2]},
-                     {alpha[0], alpha[1], alpha[2]},
-                     friction,
-                     theta_crit};
-  const double settles = settle ? 1.0 : 0.0;
+  constexpr int WIDTH = GrainLanes::WIDTH;
   double speed2[WIDTH];
   for (int i = 0; i < WIDTH; i++) {
     const Fixed fixed = {b.hold[i],       b.inv_breaking_gap[i], b.shell[i], b.radius[i],
@@ -310,10 +280,43 @@ DUST_LANES void GrainLanes::advance(Block &b, const CarrierStep &carrier, bool s
     for (int d = 0; d < 3; d++) b.push[d][i] = b.twist[d][i] = 0.0;
     b.touched[i] = 0.0;
   }
-  fastest = std::max(fastest, max);
   b.busy = any > 0.0;
   b.flies = flying > 0.0;
+  return max;
 }
+
+/* ---------------------------------------------------------------------- */
+
+void GrainLanes::advance(const CarrierStep &carrier, bool settle)
+{
+  const double *a = carrier.motion.acceleration, *w = carrier.motion.spin, *alpha = carrier.motion.angular_acceleration;
+  const Step step = {carrier.h,
+                     1.0 / carrier.h,
+                     {a[0], a[1], a[2]},
+                     {w[0], w[1], w[2]},
+                     {alpha[0], alpha[1], alpha[2]},
+                     friction,
+                     theta_crit};
+  double fastest2 = 0.0;
+  for (size_t k = 0; k < blocks.size(); k++) {
+    if (!blocks[k].busy) continue;
+    fastest2 = std::max(fastest2, ::advance(blocks[k], step, settle ? 1.0 : 0.0));
+    show_places(blocks[k], &bits[k * WIDTH]);
+  }
+  fastest = std::sqrt(fastest2);
+}
+
+void GrainLanes::find_flying(std::vector<int> &found) const
+{
+  found.clear();
+  for (size_t k = 0; k < blocks.size(); k++) {
+    if (!blocks[k].flies) continue;
+    for (int i = 0; i < WIDTH; i++)
+      if (blocks[k].awake[i] > 0.0 && blocks[k].held[i] == 0.0) found.push_back(bits[k * WIDTH + i]);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
 
 void GrainLanes::show_places(const Block &b, const int *bits_of_block)
 {

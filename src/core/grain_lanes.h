@@ -109,7 +109,7 @@ class GrainLanes {
   /*! All without a neck to the carrier, in any order */
   void find_flying(std::vector<int> &found) const;
 
- private:
+  /*! Grains side by side */
   struct alignas(64) Block {
     // constants of grains
     double hold[WIDTH], inv_breaking_gap[WIDTH], shell[WIDTH], radius[WIDTH], inv_radius[WIDTH];
@@ -120,6 +120,8 @@ class GrainLanes {
     double push[3][WIDTH], twist[3][WIDTH], touched[WIDTH];
     bool busy, flies;    // whether any is awake, any has no neck
   };
+
+ private:
   int count;
   double friction, theta_crit;
   std::vector<Block> blocks;
@@ -127,7 +129,6 @@ class GrainLanes {
   std::vector<double> places;    // four numbers a grain, the last one its radius
   double fastest = 0.0;
 
-  void advance(Block &block, const CarrierStep &step, bool settle);
   void show_places(const Block &block, const int *bits_of_block);
 };
 

@@ -24,6 +24,8 @@ GrainPairs::GrainPairs(const GrainTable &grains, double zeta, double softening) 
   // neighbours within a mean diameter: some steps pass until a grain that flies has come half as far
   skin = 2.0 * mean;
   cell = 2.0 * mean + skin;
+  const double largest = effective_radius(table.max_shell() - table.carrier_radius(), table.max_shell() - table.carrier_radius());
+  longest_neck = breaking_gap(equilibrium_contact_radius(gamma, largest, modulus), largest);
   far = 2.0 * table.max_shell() - table.carrier_radius();
   travelled = skin;
 }
@@ -48,8 +50,7 @@ void GrainPairs::find(const GrainLanes &grains, const std::vector<char> &present
       if (other > radius || (other == radius && j >= i)) return;
       const double r[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]}, reach = radius + other + skin;
       if (dot(r, r) > reach * reach) return;
-      const double r12 = effective_radius(radius, other);
-      const double range = radius + other + breaking_gap(equilibrium_contact_radius(gamma, r12, modulus), r12);
+      const double range = radius + other + longest_neck;
       pairs.emplace_back(std::min(i, j), std::max(i, j), std::nextafter(float(range * range), 1.0f));
     });
   }

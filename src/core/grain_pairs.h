@@ -56,13 +56,14 @@ class GrainPairs {
  private:
   struct Pair {
     int first, second;
-    float reach2;    // square of the distance beyond which there is no force
+    float reach2;    // square of a distance beyond which there is no force
     bool neck;
     Pair(int i, int j, float r2) : first(i), second(j), reach2(r2), neck(false) {}
   };
   const GrainTable &table;
   const double gamma, modulus, damping, hard_modulus, hard_share;    // hard_share: of a0
-  double skin, cell, far;    // lengths: of a search beyond contact, of its cells, of grains from the carrier's centre
+  // lengths: of a search beyond contact, of its cells, of grains from the carrier's centre, of necks before they break
+  double skin, cell, far, longest_neck;
   std::vector<Pair> pairs;
   std::vector<Neck> joined;
   double travelled;    // since neighbours were found

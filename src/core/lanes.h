@@ -5,6 +5,8 @@
 #ifndef DUST_CORE_LANES_H
 #define DUST_CORE_LANES_H
 
+#include <cstddef>    // tells which C library there is
+
 /*! Compiled for wide vector registers too, of which the machine's widest are taken at run time. All give the same bits:
  *  each lane does what one contact alone would do, and nothing is contracted (-ffp-contract=off). Only for functions of
  *  one file: clang makes of one that a header declares without it a single one, for the widest registers. */
