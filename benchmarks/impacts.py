@@ -28,7 +28,7 @@ import dustdetach
 import matplotlib.pyplot as plt
 from dustdetach import Impact, read_cases, sweep
 from dustdetach.figures import draw
-from dustdetach.impact import PARAMETERS, RINGING
+from dustdetach.parameters import PARAMETERS, RINGING
 from dustdetach.result import Result, read_csv, write_csv
 from machine import processor
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from dustdetach import Impact, InvalidInput
-from dustdetach.impact import METHODS, PARAMETER_TYPES
+from dustdetach.parameters import METHODS, PARAMETER_TYPES
 
 
 def test_the_reference_case_has_4500_grains():

@@ -9,7 +9,8 @@ from matplotlib import pyplot as plt
 
 from dustdetach import Impact, InvalidInput, MachineFault
 from dustdetach import pictures as module
-from dustdetach.pictures import draw_impact, draw_moments, draw_texture, read_fates
+from dustdetach.pictures import draw_impact, draw_moments, draw_texture
+from dustdetach.shares import read_fates
 from dustdetach.texture import make_texture, read_texture
 
 

@@ -30,7 +30,7 @@ def test_records_older_than_a_parameter_have_its_default(tmp_path, resolved_resu
     path.write_text("".join(",".join(line[:column] + line[column + 1 :]) + "\n" for line in lines))
     assert read_csv(path) == [resolved_result]
     old = resolved_result.to_json().replace('"spread": 1.0, ', "")
-    assert "spread" not in old
+    assert '"spread"' not in old
     assert Result.from_json(old) == resolved_result
 
 

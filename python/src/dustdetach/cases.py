@@ -12,7 +12,8 @@ from typing import Any
 
 from .errors import InvalidInput, shortened, shown
 from .files import as_path, read_text
-from .impact import METHODS, PARAMETERS, Impact
+from .impact import Impact
+from .parameters import ABOUT, METHODS, PARAMETER_TYPES, PARAMETERS
 
 #: impact speeds of both figures, m/s: dense where the near side lets go (1-4) and the far side begins (5-8)
 SPEEDS = (
@@ -134,3 +135,30 @@ def _lists(values: dict[str, Any]) -> dict[str, list[Any]]:
 
 def _combinations(lists: dict[str, list[Any]]) -> list[Impact]:
     return [Impact.from_mapping(dict(zip(lists, chosen, strict=True))) for chosen in product(*lists.values())]
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema of the TOML files that `read_cases` reads, from the descriptions of the parameters."""
+    keys = {name: _schema_of(name) for name in PARAMETERS}
+    table = {"type": "object", "properties": keys, "additionalProperties": False}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "sweep of dustdetach",
+        "type": "object",
+        "properties": {**keys, "case": {"type": "array", "minItems": 1, "items": table}},
+        "additionalProperties": False,
+    }
+
+
+def _schema_of(name: str) -> dict[str, Any]:
+    """A value, or a list of them."""
+    about = ABOUT[name]
+    one: dict[str, Any] = {
+        "type": {"float": "number", "int": "integer", "str": "string", "bool": "boolean"}[PARAMETER_TYPES[name]]
+    }
+    if about.choices:
+        one["enum"] = list(about.choices)
+    ends = {"minimum": about.least, "exclusiveMinimum": about.above, "maximum": about.most}
+    one |= {key: end for key, end in {**ends, "exclusiveMaximum": about.below}.items() if end is not None}
+    unit = f", {about.unit}" if about.unit else ""
+    return {"description": about.help + unit, "anyOf": [one, {"type": "array", "minItems": 1, "items": one}]}

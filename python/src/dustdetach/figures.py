@@ -19,7 +19,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .errors import InvalidInput
 from .files import as_path, replace_file
-from .impact import FASTEST
+from .parameters import FASTEST
 from .result import Result, read_csv
 from .sweeping import TABLE
 

@@ -26,14 +26,14 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from PIL import Image
 
-from .columns import DetachRow, Mode
 from .errors import InvalidInput, MachineFault, shown
-from .files import as_path, read_text, replace_file, scratch_folder, writable_file
+from .files import as_path, replace_file, scratch_folder, writable_file
 from .frames import Frame, frame_sizes, read_frames
 from .impact import Impact, as_impact
 from .result import Result
 from .runner import Watch, run
 from .session import MPI_ROOM, lammps_file, lammps_session
+from .shares import read_fates
 from .texture import Texture, make_texture, read_texture
 
 #: width and height of the drawing of a carrier, and of each moment of an impact, pixels
@@ -199,30 +199,6 @@ def _moments(sizes: dict[int, int], result: Result) -> list[int]:
     last = max((step for step in contact if sizes[step] == result.grains + 1), default=contact[-1])
     between = math.sqrt(max(contact[0], 1) * last)
     return [min(sizes), contact[0], min(contact, key=lambda step: abs(step - between)), last]
-
-
-def read_fates(path: str | Path, grains: int) -> NDArray[np.int64]:
-    """What became of each grain (0 attached, else the mode) from the events that LAMMPS' dump local wrote.
-
-    Raises:
-        InvalidInput: no such file, or it is cut, or an event of a grain that the texture does not have.
-    """
-    path = as_path(path, "events")
-    fates = np.zeros(grains, dtype=np.int64)
-    rows = False
-    for line in read_text(path).splitlines():
-        if line.startswith("ITEM:"):
-            rows = line.startswith("ITEM: ENTRIES")
-        elif rows:
-            words = line.split()
-            try:
-                grain, mode = int(float(words[DetachRow.GRAIN])), Mode(int(float(words[DetachRow.MODE])))
-            except (ValueError, IndexError, OverflowError):
-                raise InvalidInput(f"{path}: {shown(line)} is no event: the file is cut, or another one") from None
-            if not 1 <= grain <= grains:
-                raise InvalidInput(f"{path}: an event of grain {grain}, but the texture has {grains}")
-            fates[grain - 1] = mode
-    return fates
 
 
 def _carrier_scene(texture: Texture, kinds: NDArray[np.int64], palette: Sequence[Kind]) -> _Scene:

@@ -7,39 +7,24 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .columns import DetachAtom, DetachVector
 from .errors import InvalidInput, MachineFault
-from .files import as_path, replace_file, writable_file
-from .impact import RINGING, Impact, as_impact
+from .files import as_path, replace_file, scratch_folder, writable_file
+from .impact import Impact, as_impact
 from .places import find_deck, lammps_module
 from .result import Result
 from .session import lammps_file, lammps_session
+from .shares import mass_shares
+from .texture import BYTES_A_GRAIN
 
 #: the deck of each method
 DECKS = {"functions": "in.impact", "resolved": "in.impact.resolved"}
-
-# parameters that the decks take as variables of the same name
-_VARIABLES = (
-    "speed",
-    "angle",
-    "restitution",
-    "coverage",
-    "bare",
-    "grain_diameter",
-    "carrier_diameter",
-    "hamaker",
-    "z0",
-    "spread",
-    "friction",
-    "wall_friction",
-    "seed",
-    "timestep",
-)
-_VARIABLES_OF = {"functions": (*_VARIABLES, "tangential"), "resolved": (*_VARIABLES, "grain_damping")}
 
 Watch = Callable[[float], None]
 
@@ -77,28 +62,33 @@ def run(
     if frames is not None and impact.method != "resolved":
         raise InvalidInput("frames: without grains as atoms there are none; allowed: with method resolved")
     started = time.perf_counter()
-    parameters = asdict(impact)
-    variables = {name: parameters[name] for name in _VARIABLES_OF[impact.method]}
-    if impact.method == "functions":
-        variables["rotation"] = "yes" if impact.rotation else "no"
-        if impact.tangential in RINGING:
-            variables["grain_damping"] = impact.grain_damping
+    variables = impact.deck_variables()
     deck = find_deck(DECKS[impact.method])
-    with ExitStack() as stack:
-        for name, variable, file in (("events", "events", events), ("frames", "dump", frames)):
-            if file is not None:
-                variables[variable] = stack.enter_context(_dump(file, name))
-        lmp = stack.enter_context(lammps_session(variables, comm))
-        with _watched(lmp, watch):
-            lmp.file(str(deck))
-        read = _read_resolved if impact.method == "resolved" else _read_functions
-        return Result(
-            **parameters,
-            **read(lmp, impact),
-            steps=int(lmp.extract_global("ntimestep")),
-            wall_seconds=time.perf_counter() - started,
-            lammps_version=lmp.version(),
-        )
+    sizes = impact.method == "functions" and impact.distribution != "none"
+    with ExitStack() as outer:
+        if sizes:
+            scratch = outer.enter_context(scratch_folder(2 * BYTES_A_GRAIN * impact.grains))
+            events = events or scratch / "events"
+        with ExitStack() as stack:
+            for name, variable, file in (("events", "events", events), ("frames", "dump", frames)):
+                if file is not None:
+                    variables[variable] = stack.enter_context(_dump(file, name))
+            lmp = stack.enter_context(lammps_session(variables, comm))
+            with _watched(lmp, watch):
+                lmp.file(str(deck))
+            read = _read_resolved if impact.method == "resolved" else _read_functions
+            found = read(lmp, impact)
+            found |= {"steps": int(lmp.extract_global("ntimestep")), "lammps_version": lmp.version()}
+            change = lmp.numpy.extract_atom("v")[0] - _velocity(impact) if sizes else None
+        if change is not None and events is not None:
+            found |= mass_shares(impact, as_path(events, "events"), change, scratch / "texture")
+        return Result(**impact.values(), **found, wall_seconds=time.perf_counter() - started)  # type: ignore[arg-type]
+
+
+def _velocity(impact: Impact) -> NDArray[np.float64]:
+    """Of the carrier before the impact (3,), m/s."""
+    angle = math.radians(impact.angle)
+    return impact.speed * np.array([math.cos(angle), 0.0, -math.sin(angle)])
 
 
 @contextmanager

@@ -22,7 +22,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any, cast
@@ -209,7 +209,7 @@ class Build:
 
     def name(self, case: Impact) -> str:
         """Name of a case's folder: what varies most, then a digest of all parameters, then one of the build."""
-        digest = hashlib.sha256(json.dumps(asdict(case)).encode()).hexdigest()[:12]
+        digest = hashlib.sha256(json.dumps(case.values()).encode()).hexdigest()[:12]
         suffix = self.suffixes[case.method]
         return f"{case.method}-v{case.speed:g}-a{case.angle:g}-e{case.restitution:g}-{digest}-{suffix}"
 
