@@ -30,6 +30,12 @@ from .version import __version__
 _Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
 #: parameters of a texture
 _TEXTURE = ("coverage", "bare", "grain_diameter", "carrier_diameter", "spread", "seed")
+#: parameters of measured impacts that a fit can be told; those that are left out make no difference to it
+_FIT = tuple(
+    name
+    for name in PARAMETERS
+    if name not in ("method", "seed", "coverage", "wall_hamaker", "grain_hamaker", "tangential")
+)
 #: these two and the grains' diameter make --distribution
 _DISTRIBUTION = ("distribution", "distribution_spread")
 
@@ -114,6 +120,22 @@ def _parser() -> argparse.ArgumentParser:
     plot = _command(commands, "plot", "figures of a sweep as PNG and SVG", _plot)
     plot.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
 
+    fit = _command(commands, "fit", "material parameters from measured dispersion ratios, with intervals", _fit)
+    fit.add_argument(
+        "data", type=Path, metavar="DATA.csv", help="columns named as in results.csv; uncertainty, if known"
+    )
+    fit.add_argument(
+        "--free",
+        default="z0,spread",
+        metavar="NAMES",
+        help="what is fitted: z0, surface_energy or hamaker, spread, friction (z0,spread)",
+    )
+    fit.add_argument("--json", action="store_true", help="print one JSON object: for each parameter value, low, high")
+    fit.add_argument(
+        "--picture", type=Path, metavar="PNG", help="draw data and fit (DATA.fit.png; with --json only if given)"
+    )
+    _add_parameters(fit, _FIT, required=())
+
     texture = commands.add_parser("texture", help="make, check or draw a texture", description="Textures of grains.")
     textures = texture.add_subparsers(required=True, metavar="COMMAND")
     make = _command(textures, "make", "place grains on a carrier and write them to a file", _texture_make)
@@ -147,7 +169,9 @@ def _command(commands: _Commands, name: str, text: str, run: Callable[[argparse.
     return parser
 
 
-def _add_parameters(parser: argparse.ArgumentParser, names: Sequence[str]) -> None:
+def _add_parameters(
+    parser: argparse.ArgumentParser, names: Sequence[str], required: Sequence[str] = ("speed",)
+) -> None:
     """The options of parameters, and those that stand for several of them."""
     for name in names:
         if name == "distribution":
@@ -160,11 +184,11 @@ def _add_parameters(parser: argparse.ArgumentParser, names: Sequence[str]) -> No
                 "exponent; in place of --grain-diameter",
             )
         elif name != "distribution_spread":
-            _add_parameter(parser, name)
+            _add_parameter(parser, name, required=name in required)
     _add_materials(parser)
 
 
-def _add_parameter(parser: argparse.ArgumentParser, name: str) -> None:
+def _add_parameter(parser: argparse.ArgumentParser, name: str, *, required: bool) -> None:
     about, default = ABOUT[name], getattr(Parameters, name, None)
     unit = f", {about.unit}" if about.unit else ""
     if about.follows:
@@ -181,7 +205,7 @@ def _add_parameter(parser: argparse.ArgumentParser, name: str) -> None:
     parser.add_argument(
         option(name),
         type=kind,
-        required=name == "speed",
+        required=required,
         default=argparse.SUPPRESS,
         metavar="WORD" if kind is str else "N" if kind is int else "X",
         help=words,
@@ -353,6 +377,35 @@ def _png(path: Path, name: str) -> Path:
     if path.suffix.lower() != ".png":
         raise InvalidInput(f"{name}: {path}; allowed: a file name that ends in .png")
     return writable_file(path, name)
+
+
+def _fit(options: argparse.Namespace, _: bool) -> int:
+    from .fitting import fit, read_data
+
+    free = tuple(name.strip().replace("-", "_") for name in options.free.split(",") if name.strip())
+    picture = options.picture
+    if picture is None and not options.json:
+        picture = options.data.with_suffix(".fit.png")
+    if picture is not None:
+        picture = _png(picture, "--picture")
+    found = fit(read_data(options.data, free, _given(options, _FIT)), free)
+    if picture is not None:
+        from .fit_figure import draw_fit
+
+        draw_fit(found, picture)
+    if options.json:
+        print(json.dumps(found.to_mapping()))
+        return 0
+    for name, estimate in found.estimates.items():
+        about = ABOUT[name]
+        unit = f" {about.unit}" if about.unit else ""
+        print(
+            f"{name:15} {estimate.value:.4g}{unit}  ({estimate.low:.4g} to {estimate.high:.4g}, 95 % for all at once)"
+        )
+    for name in found.untold:
+        print(f"{name:15} not told by the data")
+    print("\n".join([*found.words, *described_materials(found.data.impacts[0])[:3], str(picture)]))
+    return 0
 
 
 def _materials(options: argparse.Namespace, _: bool) -> int:

@@ -32,7 +32,7 @@ FORMATS = ("png", "svg")
 #: a second table of a folder, of resolved runs that its sweep has not made
 MORE = "resolved.csv"
 
-_STYLE: Any = {
+STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 9,
     "axes.titlelocation": "left",
@@ -135,7 +135,7 @@ def draw(results: list[Result], stem: Path) -> list[Path]:
         The files written.
     """
     curves = _curves(results)
-    with plt.rc_context(_STYLE):
+    with plt.rc_context(STYLE):
         figure = plt.figure(figsize=(7.1, 3.9), layout="constrained")
         axes = figure.subplot_mosaic([["all", "north"], ["all", "south"]], width_ratios=[1.75, 1])
         panels: list[tuple[str, str, float, Callable[[Result], float]]] = [

@@ -208,7 +208,7 @@ class Impact(Parameters):
                 f"--z0: {self.z0:g} m makes a surface energy of {self.surface_energy:.3g} J/m2; allowed: {least:.3g} "
                 "to 1e-07 m for this Hamaker constant"
             )
-        held = self._pull_off_force(self.coarsest) / self._mass(self.coarsest)
+        held = self.hold(self.coarsest)
         if held < GRAVITY:
             raise InvalidInput(
                 f"--grain-diameter: {self.coarsest:g} m makes grains that are held up to an acceleration of "
@@ -218,6 +218,10 @@ class Impact(Parameters):
     def _pull_off_force(self, diameter: float) -> float:
         """F_c = 3 pi gamma R_12 of a grain, the median of its spread, N."""
         return 3 * math.pi * self.surface_energy / (2 / diameter + 2 / self.carrier_diameter)
+
+    def hold(self, diameter: float) -> float:
+        """F_c/m_d of a grain: the acceleration up to which it is held, the median of its spread, m/s2."""
+        return self._pull_off_force(diameter) / self._mass(diameter)
 
     def _mass(self, diameter: float) -> float:
         return math.pi / 6 * diameter**3 * self.grain_density
@@ -231,7 +235,7 @@ class Impact(Parameters):
                 f"--spin: {self.spin:g} rad/s does nothing where the spin is not followed; allowed: 0, or --rotation"
             )
         reach = (self.carrier_diameter + self.coarsest) / 2
-        fastest = math.sqrt(self._pull_off_force(self.coarsest) / (self._mass(self.coarsest) * reach))
+        fastest = math.sqrt(self.hold(self.coarsest) / reach)
         if abs(self.spin) >= fastest:
             raise InvalidInput(
                 f"--spin: {self.spin:g} rad/s throws grains off before the impact; allowed: above -{fastest:.4g} and "
@@ -287,20 +291,22 @@ class Impact(Parameters):
     @property
     def finest(self) -> float:
         """Diameter of the finest grains that there can be, m."""
-        return self._quantile(CUT)
+        return self.quantile(CUT)
 
     @property
     def coarsest(self) -> float:
         """Diameter of the coarsest grains that there can be, m."""
-        return self._quantile(1 - CUT)
+        return self.quantile(1 - CUT)
 
-    def _quantile(self, fraction: float) -> float:
-        """Diameter below which there is 0.01 or 0.99 of the volume, m."""
+    def quantile(self, fraction: float) -> float:
+        """Diameter below which there is this fraction of the volume, before the cuts at 0.01 and 0.99, m."""
         if self.distribution == "none":
             return self.grain_diameter
         if self.distribution == "rrsb":
             return float(self.grain_diameter * (-math.log1p(-fraction) / math.log(2)) ** (1 / self.distribution_spread))
         deviations = math.copysign(CUT_DEVIATIONS, fraction - 0.5)
+        if fraction not in (CUT, 1 - CUT):
+            deviations = _normal_quantile(fraction)
         return self.grain_diameter * math.exp(deviations * math.log(self.distribution_spread))
 
     @property
@@ -386,11 +392,15 @@ def combined_modulus(modulus: float, poisson: float, other_modulus: float, other
     return 1 / ((1 - poisson**2) / modulus + (1 - other_poisson**2) / other_modulus)
 
 
+def _normal_quantile(fraction: float) -> float:
+    from statistics import NormalDist
+
+    return NormalDist().inv_cdf(fraction)
+
+
 @cache
 def _grains_for_one(distribution: str, spread: float) -> float:
     """Grains of a distribution that cover as much as one of its median diameter, by means over the volume."""
-    from statistics import NormalDist
-
     number = squares = 0.0
     intervals = 400
     for k in range(intervals):
@@ -399,7 +409,7 @@ def _grains_for_one(distribution: str, spread: float) -> float:
         if distribution == "rrsb":
             size = (-math.log1p(-fraction) / math.log(2)) ** (1 / spread)
         else:
-            size = spread ** NormalDist().inv_cdf(fraction)
+            size = spread ** _normal_quantile(fraction)
         number += fraction / size**3
         squares += fraction / size
     return number / squares

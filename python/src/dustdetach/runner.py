@@ -35,6 +35,7 @@ def run(
     comm: Any = None,
     events: str | Path | None = None,
     frames: str | Path | None = None,
+    motion: str | Path | None = None,
     watch: Watch | None = None,
 ) -> Result:
     """Run one impact with the method it names.
@@ -44,21 +45,24 @@ def run(
         comm: an mpi4py communicator for LAMMPS; all ranks of the process without one.
         events: a file for every detachment, as LAMMPS' dump local writes it (method ``functions``); see `pictures`.
         frames: a file for all grains every half microsecond, as LAMMPS' dump custom writes it (method ``resolved``).
+        motion: a file for the carrier's motion, a line a step, as LAMMPS' dump custom writes it (method
+            ``functions``); see `response`.
         watch: called about once a second, from another thread, with the time that has been simulated, s.
 
     Returns:
         Dispersion ratio with its shares, and the collision's time, peak acceleration and restitution.
 
     Raises:
-        InvalidInput: ``events`` or ``frames`` that the method does not write or that can be no file, or what only
-            LAMMPS can judge, for instance a coverage that cannot be placed.
+        InvalidInput: ``events``, ``frames`` or ``motion`` that the method does not write or that can be no file, or
+            what only LAMMPS can judge, for instance a coverage that cannot be placed.
         MachineFault: the disk is full, or fails.
         LammpsMissing: LAMMPS, the plugin or the deck is not there.
         LammpsBusy: another thread of this process is at it: LAMMPS runs one at a time in a process.
     """
     impact = as_impact(impact, "run")
-    if events is not None and impact.method != "functions":
-        raise InvalidInput("events: a resolved run has none; allowed: with method functions")
+    for name, file in (("events", events), ("motion", motion)):
+        if file is not None and impact.method != "functions":
+            raise InvalidInput(f"{name}: a resolved run has none; allowed: with method functions")
     if frames is not None and impact.method != "resolved":
         raise InvalidInput("frames: without grains as atoms there are none; allowed: with method resolved")
     started = time.perf_counter()
@@ -70,7 +74,7 @@ def run(
             scratch = outer.enter_context(scratch_folder(2 * BYTES_A_GRAIN * impact.grains))
             events = events or scratch / "events"
         with ExitStack() as stack:
-            for name, variable, file in (("events", "events", events), ("frames", "dump", frames)):
+            for name, variable, file in _files(events, frames, motion):
                 if file is not None:
                     variables[variable] = stack.enter_context(_dump(file, name))
             lmp = stack.enter_context(lammps_session(variables, comm))
@@ -83,6 +87,13 @@ def run(
         if change is not None and events is not None:
             found |= mass_shares(impact, as_path(events, "events"), change, scratch / "texture")
         return Result(**impact.values(), **found, wall_seconds=time.perf_counter() - started)  # type: ignore[arg-type]
+
+
+def _files(
+    events: str | Path | None, frames: str | Path | None, motion: str | Path | None
+) -> tuple[tuple[str, str, str | Path | None], ...]:
+    """What messages call each file, the deck's variable of it, and its name."""
+    return (("events", "events", events), ("frames", "dump", frames), ("motion", "motion", motion))
 
 
 def _velocity(impact: Impact) -> NDArray[np.float64]:
