@@ -158,8 +158,11 @@ def _parser() -> argparse.ArgumentParser:
     _command(commands, "schema", "JSON Schema of a sweep's TOML file, for editors", _schema)
 
     _command(commands, "doctor", "what is installed, and what is wrong with it", _doctor)
-    report = _command(commands, "report", "not there yet", _report)
+    report = _command(
+        commands, "report", "one HTML file of a sweep, to mail: figures, table, a carrier that turns", _report
+    )
     report.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
+    report.add_argument("--out", type=Path, metavar="FILE", help="the file (report.html in the folder)")
     return parser
 
 
@@ -448,8 +451,12 @@ def _doctor(_: argparse.Namespace, __: bool) -> int:
     return 0 if all(finding.ok for finding in findings) else 1
 
 
-def _report(_: argparse.Namespace, __: bool) -> int:
-    raise InvalidInput("report is not there yet; allowed: plot")
+def _report(options: argparse.Namespace, _: bool) -> int:
+    from .report import write_report
+
+    out = options.out if options.out is None else writable_file(options.out, "--out")
+    print(write_report(options.folder, out))
+    return 0
 
 
 def _rank() -> int:

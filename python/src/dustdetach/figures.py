@@ -103,6 +103,13 @@ def plot(folder: str | Path) -> list[Path]:
         for row in rows:
             _check(row, table)
         results += rows
+    if not draw_all_of(results):
+        raise InvalidInput(f"{folder / TABLE}: no curve to draw: at least two speeds are needed")
+    return draw_all(results, folder)
+
+
+def draw_all_of(results: list[Result]) -> dict[str, list[Result]]:
+    """The figures that results make, each with its rows."""
     straight = [result for result in results if result.angle == 90]
     oblique = _at_most_angles(results)
     figures = {}
@@ -111,7 +118,13 @@ def plot(folder: str | Path) -> list[Path]:
     if len(_curves(straight)) > 1 or (straight and not oblique):
         figures["figure4"] = straight
     if not any(len({result.speed for result in rows}) > 1 for rows in figures.values()):
-        raise InvalidInput(f"{folder / TABLE}: no curve to draw: at least two speeds are needed")
+        return {}
+    return figures
+
+
+def draw_all(results: list[Result], folder: Path) -> list[Path]:
+    """Draw every figure that results make into a folder."""
+    figures = draw_all_of(results)
     return [path for name in sorted(figures) for path in draw(figures[name], folder / name)]
 
 
