@@ -179,7 +179,7 @@ def test_what_lammps_refuses(command, tmp_path):
             "--method: unknown choice 'magic'; allowed: functions, resolved, both",
         ),
         (("plot", "nowhere"), "nowhere/results.csv: no such file"),
-        (("report", "nowhere"), "report is not there yet; allowed: plot"),
+        (("report", "nowhere"), "nowhere/results.csv: no such file"),
         (("texture", "make", "--coverage", "0.7", "--out", "t"), "--coverage: 0.7 is out of range"),
         (("texture", "make", "--out", "no/such/t"), "--out: there is no folder no/such"),
         (("texture", "make", "--out", "."), "--out: . is a folder"),

@@ -55,6 +55,7 @@ class About:
         methods: the methods that use it.
         deck: whether the decks take it as a variable as it is; under its own name but for those in `variables`, which
             are by method.
+        title: of an axis, where the help is too long for one.
         symbol: in figures, in matplotlib's mathematics; empty if it does not stand in figures.
         figure_unit: in figures, if not `unit`, and ``factor`` to it.
         since: 0 if it is in all records; records before this version of theirs had its default.
@@ -72,6 +73,7 @@ class About:
     methods: tuple[str, ...] = ("functions", "resolved")
     deck: bool = True
     variables: Mapping[str, str] = field(default_factory=dict)
+    title: str = ""
     symbol: str = ""
     figure_unit: str = ""
     factor: float = 1.0
@@ -135,7 +137,7 @@ class About:
         """The title of an axis: what it is, symbol, unit."""
         unit = self.figure_unit or self.unit
         symbol = f" {self.symbol}" if "$" in self.symbol else ""
-        text = self.help.split(";")[0].split(" (")[0]
+        text = self.title or self.help.split(";")[0].split(" (")[0]
         return f"{text[0].upper()}{text[1:]}{symbol}" + (f" ({unit})" if unit else "")
 
 

@@ -119,6 +119,10 @@ def _parser() -> argparse.ArgumentParser:
 
     plot = _command(commands, "plot", "figures of a sweep as PNG and SVG", _plot)
     plot.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
+    for role, what in (("x", "along the axis"), ("color", "told by colour"), ("panel", "with a panel for each value")):
+        plot.add_argument(f"--{role}", metavar="P", help=f"the parameter {what}, in place of the figures by speed")
+    plot.add_argument("--y", metavar="COLUMN", help="the column drawn by --x (dispersion_ratio)")
+    plot.add_argument("--map", metavar="X,Y", help="a map of the dispersion ratio over two parameters")
 
     fit = _command(commands, "fit", "material parameters from measured dispersion ratios, with intervals", _fit)
     fit.add_argument(
@@ -332,9 +336,29 @@ def _progress() -> Callable[[int, int, float], None]:
 
 
 def _plot(options: argparse.Namespace, _: bool) -> int:
-    from .figures import plot
+    roles = {
+        role: value.replace("-", "_")
+        for role in ("x", "color", "panel", "y")
+        if (value := getattr(options, role)) is not None
+    }
+    if options.map is not None:
+        from .plots import plot_map
 
-    for path in plot(options.folder):
+        if set(roles) - {"panel"}:
+            raise InvalidInput("--map: has both axes; allowed: with --panel alone")
+        axes = [name.strip().replace("-", "_") for name in options.map.split(",")]
+        if len(axes) != 2:
+            raise InvalidInput(f"--map: {options.map}; allowed: two parameters with a comma between them")
+        paths = plot_map(options.folder, *axes, **roles)
+    elif roles:
+        from .plots import plot_by
+
+        paths = plot_by(options.folder, **roles)
+    else:
+        from .figures import plot
+
+        paths = plot(options.folder)
+    for path in paths:
         print(path)
     return 0
 
