@@ -6,11 +6,12 @@
 """
 
 from .cases import figure4, figure5, read_cases
-from .errors import DustError, InvalidInput, LammpsBusy, LammpsMissing, MachineFault
+from .errors import DustError, InvalidInput, LammpsBusy, LammpsMissing, MachineFault, PackageMissing
 from .impact import Impact
 from .result import Result, read_csv
 from .runner import run
 from .sweeping import CasesFailed, sweep
+from .tables import to_dataframe, write_parquet
 from .texture import Texture
 from .version import __version__
 
@@ -22,6 +23,7 @@ __all__ = [
     "LammpsBusy",
     "LammpsMissing",
     "MachineFault",
+    "PackageMissing",
     "Result",
     "Texture",
     "__version__",
@@ -31,4 +33,6 @@ __all__ = [
     "read_csv",
     "run",
     "sweep",
+    "to_dataframe",
+    "write_parquet",
 ]

@@ -115,6 +115,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_materials(sweep)
     sweep.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the results")
     sweep.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (1)")
+    sweep.add_argument("--parquet", action="store_true", help="write results.parquet beside results.csv, with units")
     sweep.add_argument("--executor", default="local", help="local, or mpi under mpirun (local)")
 
     plot = _command(commands, "plot", "figures of a sweep as PNG and SVG", _plot)
@@ -319,6 +320,11 @@ def _sweep(options: argparse.Namespace, speaks: bool) -> int:
         return 1
     if speaks:
         print(options.out / "results.csv")
+    if speaks and options.parquet:
+        from .result import read_csv
+        from .tables import PARQUET, write_parquet
+
+        print(write_parquet(options.out / PARQUET, read_csv(options.out / "results.csv")))
     return 0
 
 

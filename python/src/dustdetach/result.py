@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
+from html import escape
 from io import StringIO
 from pathlib import Path
 from typing import Any, cast
@@ -69,6 +70,16 @@ class Result(Parameters):
     wall_seconds: float = field(metadata=about("time of the whole impact with set-up", unit="s"))
     lammps_version: int = field(metadata=about("version of LAMMPS (yyyymmdd)"))
 
+    def _repr_html_(self) -> str:
+        """For notebooks: what matters most."""
+        rows = [line.split(maxsplit=1) for line in described_materials(self)]
+        rows.insert(0, ["impact", f"{self.speed:g} m/s, {self.angle:g} degrees, restitution {self.restitution:g}"])
+        rows.append(
+            ["dispersion ratio", f"{self.dispersion_ratio:.4f}: south {self.south:.4f}, north {self.north:.4f}"]
+        )
+        cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in rows)
+        return f"<table>{cells}</table>"
+
     def columns(self) -> dict[str, str | bool | int | float | None]:
         """Every column by name, in order."""
         return {key: getattr(self, key) for key in KEYS}
@@ -103,7 +114,7 @@ KEYS = tuple(
         key=lambda key: (max(0, COLUMNS[key].since - SPREAD), _PLACES.index("steps" if key == "timestep" else key)),
     )
 )
-_TYPES = {of.name: str(of.type) for of in fields(Result)}
+TYPES = {of.name: str(of.type) for of in fields(Result)}
 #: of parameters that are newer than some records: they have the reference case's
 _NEWER = frozenset(name for name, known in COLUMNS.items() if known.since)
 
@@ -122,7 +133,7 @@ def _value(key: str, values: dict[str, Any]) -> str | bool | int | float | None:
     """The value of a key, if it is of the type that `Result` asks for."""
     if key not in values:
         raise InvalidInput(f"not a result: no key {key}")
-    value, kind = values[key], _TYPES[key]
+    value, kind = values[key], TYPES[key]
     if value is None and kind.endswith("| None"):
         return None
     if kind.startswith("float") and type(value) in (int, float) and abs(value) <= sys.float_info.max:
@@ -196,7 +207,7 @@ def _row(path: Path, line: int, row: dict[Any, Any]) -> Result:
         if key in _NEWER and key not in row:
             continue
         try:
-            values[key] = _field(_TYPES[key], row[key])
+            values[key] = _field(TYPES[key], row[key])
         except ValueError as error:
             raise InvalidInput(f"{path}: line {line}: {key}: {error}") from None
     return _filled(values)
