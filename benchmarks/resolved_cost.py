@@ -58,7 +58,8 @@ def stock(text: str) -> str:
     """The same grains with LAMMPS' own contact."""
     gamma = "$(v_{}/(18*PI*v_z0^2))"
     ours = {
-        "${hamaker} ${z0} ${slide}": gamma.format("hamaker"),
+        "${hamaker_wall} ${z0} ${slide}": gamma.format("hamaker_wall"),
+        "$(v_hamaker1) ${z0} ${slide}": gamma.format("hamaker1"),
         "${hamaker_grains} ${z0} ${slide}": gamma.format("hamaker_grains"),
     }
     for words, cohesion in ours.items():
@@ -69,7 +70,7 @@ def stock(text: str) -> str:
             f"{cohesion} tangential mindlin NULL 0.0 ${{friction}} damping viscoelastic "
             f"rolling sds {stiffness} 0.0 $(2*v_theta_crit)",
         )
-    return replace(text, r"\bjkr/vdw\b", "jkr", 3)
+    return replace(text, r"\bjkr/vdw\b", "jkr", 4)
 
 
 def at_rest(text: str) -> str:
