@@ -100,11 +100,20 @@ def read_cases(path: str | Path) -> list[Impact]:
         InvalidInput: no such file, not TOML, an unknown key, a value out of range; the message names file and key.
     """
     path = as_path(path, "read_cases")
+    return _cases_of(path, read_toml(path, f"{', '.join(NAMED)} or the name of a TOML file"))
+
+
+def read_toml(path: Path, allowed: str) -> dict[str, Any]:
+    """The content of a TOML file.
+
+    Raises:
+        InvalidInput: no such file, or not TOML; the message names it.
+    """
     if not os.path.lexists(path):
-        raise InvalidInput(f"{path}: no such file; allowed: {', '.join(NAMED)} or the name of a TOML file")
+        raise InvalidInput(f"{path}: no such file; allowed: {allowed}")
     text = read_text(path)
     try:
-        content = tomllib.loads(text)
+        return tomllib.loads(text)
     except RecursionError:
         raise InvalidInput(f"{path}: not TOML that can be read: nested too deeply") from None
     except tomllib.TOMLDecodeError as error:
@@ -113,6 +122,8 @@ def read_cases(path: str | Path) -> list[Impact]:
         # Python takes no whole number of more than 4300 digits
         raise InvalidInput(f"{path}: a number of too many digits") from None
 
+
+def _cases_of(path: Path, content: dict[str, Any]) -> list[Impact]:
     tables = content.pop("case", [{}])
     if not (isinstance(tables, list) and tables and all(isinstance(table, dict) for table in tables)):
         raise InvalidInput(f"{path}: case: allowed: tables [[case]]")

@@ -11,6 +11,7 @@ import json
 import math
 import os
 import sys
+import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from io import TextIOWrapper
@@ -140,6 +141,11 @@ def _parser() -> argparse.ArgumentParser:
         "--picture", type=Path, metavar="PNG", help="draw data and fit (DATA.fit.png; with --json only if given)"
     )
     _add_parameters(fit, _FIT, required=())
+
+    sensitivity = _command(commands, "sensitivity", "which uncertain input matters: Sobol indices", _sensitivity)
+    sensitivity.add_argument("cases", metavar="FILE.toml", help="one value, or a distribution, for each parameter")
+    _add_materials(sensitivity)
+    sensitivity.add_argument("--json", action="store_true", help="print one JSON object")
 
     texture = commands.add_parser("texture", help="make, check or draw a texture", description="Textures of grains.")
     textures = texture.add_subparsers(required=True, metavar="COMMAND")
@@ -438,6 +444,27 @@ def _fit(options: argparse.Namespace, _: bool) -> int:
     for name in found.untold:
         print(f"{name:15} not told by the data")
     print("\n".join([*found.words, *described_materials(found.data.impacts[0])[:3], str(picture)]))
+    return 0
+
+
+def _sensitivity(options: argparse.Namespace, _: bool) -> int:
+    from .sensitivity import sensitivity
+
+    if options.materials is not None:
+        use_materials(options.materials)
+    line, began = _StatusLine(), time.monotonic()
+
+    def watch(done: int, total: int) -> None:
+        left = (time.monotonic() - began) / done * (total - done)
+        line.tell(f"{done}/{total} impacts, {left:.0f} s left", 10 * done // total, "\n" if done == total else "")
+
+    found = sensitivity(options.cases, watch)
+    if options.json:
+        print(json.dumps(vars(found)))
+        return 0
+    print(f"dispersion ratio   {found.mean:.4f} +- {found.deviation:.4f} ({found.impacts} impacts)")
+    for name in sorted(found.first, key=lambda name: -found.total[name]):
+        print(f"{name:18} first order {found.first[name]:5.2f}   total {found.total[name]:5.2f}")
     return 0
 
 

@@ -325,19 +325,16 @@ class _Response:
             sizes = [impact.quantile(0.01 + 0.98 * (k + 0.5) / SIZES) for k in range(SIZES)]
         self.holds = [impact.hold(size) for size in sizes]
         places = [Places(impact, size) for size in sizes]
-        self._fixed = [] if friction_free else [Polygon.of(each.holds(impact.friction)) for each in places]
-        self._tables = [
-            np.log(np.maximum([each.holds(friction) for friction in FRICTIONS], 1e-6))
-            for each in places
-            if friction_free
-        ]
+        frictions = FRICTIONS if friction_free else np.array([impact.friction])
+        self._states = [Polygon.alike(np.array([each.holds(mu) for mu in frictions])) for each in places]
 
     def polygons(self, friction: float | None) -> list[Polygon]:
+        """One for each size."""
         if friction is None:
-            return self._fixed
+            return [states[0] for states in self._states]
         k = int(np.clip(np.searchsorted(FRICTIONS, friction) - 1, 0, len(FRICTIONS) - 2))
         part = (friction - FRICTIONS[k]) / (FRICTIONS[k + 1] - FRICTIONS[k])
-        return [Polygon.of(np.exp((1 - part) * table[k] + part * table[k + 1])) for table in self._tables]
+        return [Polygon((1 - part) * states[k].x + part * states[k + 1].x, states[k].above) for states in self._states]
 
 
 _responses: dict[tuple[Any, ...], _Response] = {}
@@ -365,10 +362,13 @@ def fit(data: Data, free: Sequence[str] = ("z0", "spread")) -> Fit:
     _check_points(data, free)
     problem, model = _problem(data, data.impacts, free)
     best, least = problem.search(model.starts())
-    limit = _limit(data, len(free), least)
+    ends_of = _ends(problem, data, best, least)
+    if problem.lowest[1] < 0.999 * least:
+        # a profile has led to a deeper valley
+        best, least = problem.search([problem.lowest[0]])
+        ends_of = _ends(problem, data, best, least)
     estimates, untold = {}, {}
-    for k, name in enumerate(free):
-        ends = [problem.end(k, side, best, least, limit) for side in (-1, 1)]
+    for k, (name, ends) in enumerate(zip(free, ends_of, strict=True)):
         if reason := _left_open(model, k, ends):
             untold[name] = reason
         else:
@@ -386,6 +386,12 @@ def fit(data: Data, free: Sequence[str] = ("z0", "spread")) -> Fit:
             f"{data.source}: {' '.join(words)} allowed: fewer of --free, or data at more speeds, angles or spins"
         )
     return Fit(estimates, untold, at, data, predicted, rms, alike[0], words)
+
+
+def _ends(problem: _Problem, data: Data, best: Array, least: float) -> list[list[tuple[float, bool]]]:
+    """Both ends of each parameter's interval."""
+    limit = _limit(data, len(best), least)
+    return [[problem.end(k, side, best, limit) for side in (-1, 1)] for k in range(len(best))]
 
 
 def _problem(data: Data, impacts: Sequence[Impact], free: Sequence[str]) -> tuple[_Problem, Model]:
@@ -483,6 +489,8 @@ class _Problem:
 
     def __init__(self, misses: Callable[[Array], Array], bounds: Array) -> None:
         self._misses, self._bounds = misses, bounds
+        # what a profile came across
+        self.lowest: tuple[Array, float] = (np.empty(0), math.inf)
 
     def _least(self, start: Array, held: int | None = None) -> tuple[Array, float]:
         """The best point from a start, one parameter held or none, and its sum of squares."""
@@ -518,10 +526,8 @@ class _Problem:
         chosen = [starts[index] for index in np.argsort(sums)[:4]]
         return min((self._least(point) for point in chosen), key=lambda found: found[1])
 
-    def end(self, k: int, side: int, best: Array, least: float, limit: float) -> tuple[float, bool]:
+    def end(self, k: int, side: int, best: Array, limit: float) -> tuple[float, bool]:
         """Where a parameter's profile comes to the limit on one side, and whether it does before its bound."""
-        from scipy.optimize import brentq
-
         bound = float(self._bounds[k, 0 if side < 0 else 1])
         warm = best.copy()
 
@@ -530,6 +536,8 @@ class _Problem:
             start = warm.copy()
             start[k] = at
             warm, least_there = self._least(start, k)
+            if least_there < self.lowest[1]:
+                self.lowest = warm, least_there
             return least_there - limit
 
         inside, step = float(best[k]), 0.02
@@ -542,9 +550,14 @@ class _Problem:
             if outside == bound:
                 return bound, False
             inside, step = outside, step * 1.6
-        if inside == best[k] and above(inside) >= 0:
-            return inside, True
-        return float(brentq(above, inside, outside, xtol=2e-4, rtol=1e-6)), True
+        # by halves: a start from the other side may find another valley, so that no sign is certain
+        while abs(outside - inside) > 2e-4:
+            middle = 0.5 * (inside + outside)
+            if above(middle) > 0:
+                outside = middle
+            else:
+                inside = middle
+        return inside, True
 
 
 def _other_spread(data: Data, free: Sequence[str], *, with_spread: bool) -> tuple[float, float]:

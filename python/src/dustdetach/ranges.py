@@ -21,6 +21,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .about import finite_number
 from .errors import InvalidInput, shown
 
@@ -180,8 +183,8 @@ class Sampling:
         Raises:
             InvalidInput: a distribution whose numbers make none.
         """
-        kinds = {name: _checked(name, value) for name, value in distributions.items()}
-        from scipy.stats import norm, qmc
+        kinds = {name: checked(name, value) for name, value in distributions.items()}
+        from scipy.stats import qmc
 
         if self.method == "sobol":
             engine = qmc.Sobol(len(kinds), rng=self.seed)
@@ -190,18 +193,29 @@ class Sampling:
         else:
             shares = qmc.LatinHypercube(len(kinds), rng=self.seed).random(self.number)
         shares = shares.clip(1e-12, 1 - 1e-12)
-        columns = {}
-        for (name, (kind, a, b)), share in zip(kinds.items(), shares.T, strict=True):
-            deviations = norm.ppf(share)
-            columns[name] = {
-                "uniform": a + (b - a) * share,
-                "normal": a + b * deviations,
-                "lognormal": a * b**deviations,
-            }[kind].tolist()
+        columns = {
+            name: values_at(column, *kind).tolist()
+            for (name, kind), column in zip(kinds.items(), shares.T, strict=True)
+        }
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-def _checked(name: str, value: Mapping[str, Any]) -> tuple[str, float, float]:
+def values_at(shares: NDArray[np.float64], kind: str, a: float, b: float) -> NDArray[np.float64]:
+    """The values of a distribution below which there are these shares of it."""
+    from scipy.stats import norm
+
+    if kind == "uniform":
+        return np.asarray(a + (b - a) * shares)
+    deviations = norm.ppf(shares)
+    return np.asarray(a + b * deviations if kind == "normal" else a * b**deviations)
+
+
+def checked(name: str, value: Mapping[str, Any]) -> tuple[str, float, float]:
+    """Kind and numbers of a distribution.
+
+    Raises:
+        InvalidInput: numbers that make none.
+    """
     ((kind, pair),) = value.items()
     if not (isinstance(pair, list) and len(pair) == 2):
         raise InvalidInput(f"{name}: {kind}: {shown(pair)} is not two numbers")

@@ -227,15 +227,21 @@ class Polygon:
     @classmethod
     def of(cls, holds: Array) -> Polygon:
         """From c* of all places (N,), m/s2; thinned, so that its slopes are those of many places."""
-        x = np.log(np.sort(np.maximum(holds, 1e-6)))
-        count = len(x)
+        return cls.alike(holds[None])[0]
+
+    @classmethod
+    def alike(cls, holds: Array) -> list[Polygon]:
+        """From c* of all places in several states (M, N), with the same shares: between two, x lies between."""
+        x = np.sort(np.log(np.maximum(holds, 1e-6)), axis=1)
+        count = x.shape[1]
         kept = np.zeros(count, dtype=bool)
         kept[::THINNED] = kept[-1] = True
-        gaps = np.flatnonzero(np.diff(x) > GAP)
+        gaps = np.flatnonzero(np.any(np.diff(x, axis=1) > GAP, axis=0))
         kept[gaps] = kept[gaps + 1] = True
         places = np.flatnonzero(kept)
         # equal ones in a row would make a jump of a line
-        return cls(x[places] + 1e-9 * np.arange(len(places)), 1 - places / (count - 1))
+        rising, above = 1e-9 * np.arange(len(places)), 1 - places / (count - 1)
+        return [cls(row[places] + rising, above) for row in x]
 
 
 class Curves:
