@@ -75,7 +75,7 @@ def _indices(
     sampling: Sampling,
     watch: Callable[[int, int], None] | None,
 ) -> Sensitivity:
-    """By a Sobol sequence for A and B, with the inputs of A replaced by those of B one by one, and Jansen's estimators."""
+    """By a Sobol sequence for A and B, with inputs of A replaced by those of B in turn, and Jansen's estimators."""
     from scipy.stats import qmc
 
     number, inputs = 2 ** max(3, math.ceil(math.log2(sampling.number))), len(kinds)
