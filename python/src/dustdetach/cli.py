@@ -18,7 +18,16 @@ from typing import NoReturn, TypeAlias
 from .cases import NAMED, named_or_file, with_methods
 from .errors import DustError, InvalidInput, one_line
 from .files import writable_file
-from .impact import BARE_FROM_GEOMETRY, METHODS, PARAMETER_TYPES, RINGING, TANGENTIAL, Impact, option
+from .impact import (
+    BARE_FROM_GEOMETRY,
+    METHODS,
+    PARAMETER_TYPES,
+    RINGING,
+    TANGENTIAL,
+    TIMESTEP_FROM_CONTACT,
+    Impact,
+    option,
+)
 from .result import Result
 from .version import __version__
 
@@ -39,7 +48,7 @@ _HELP = {
     "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential " + " or ".join(RINGING),
     "seed": "of the random texture",
     "tangential": "tangential lift-off: " + ", ".join(TANGENTIAL),
-    "timestep": "s",
+    "timestep": "s (1/300 of the contact time, to two digits; 1e-9 in a resolved run)",
 }
 _Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
 _TEXTURE = ("coverage", "bare", "grain_diameter", "carrier_diameter", "spread", "seed")
@@ -166,7 +175,7 @@ def _command(commands: _Commands, name: str, text: str, run: Callable[[argparse.
 def _add_parameter(parser: argparse.ArgumentParser, name: str, *, required: bool) -> None:
     kind = {"float": float, "int": int, "str": str}[PARAMETER_TYPES[name]]
     default = getattr(Impact, name, None)
-    if default is BARE_FROM_GEOMETRY:
+    if default is BARE_FROM_GEOMETRY or default is TIMESTEP_FROM_CONTACT:
         default = None
     parser.add_argument(
         option(name),

@@ -19,7 +19,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .errors import InvalidInput
 from .files import as_path, replace_file
-from .impact import FASTEST
+from .impact import FASTEST, default_timestep
 from .result import Result, read_csv
 from .sweeping import TABLE
 
@@ -184,7 +184,11 @@ def _curves(results: list[Result]) -> dict[Curve, list[Result]]:
 
 
 def _differing(results: list[Result]) -> list[str]:
-    return [name for name in _LABELS if len({getattr(result, name) for result in results}) > 1]
+    differing = [name for name in _LABELS if len({getattr(result, name) for result in results}) > 1]
+    if all(result.timestep == default_timestep(result) for result in results):
+        # what nobody has asked for
+        differing = [name for name in differing if name != "timestep"]
+    return differing
 
 
 def _laws(results: Iterable[Result]) -> list[str]:
