@@ -74,10 +74,18 @@ class ShellGrid {
       int i = static_cast<int>((from + 1.0) * nbins);
       const int count = std::min(nbins, static_cast<int>((from + 1.0 + width) * nbins) - i + 1);
       while (i >= nbins) i -= nbins;
-      for (int k = 0; k < count; k++) {
-        for (int p = heads[i]; p != NONE; p = points[p].earlier)
-          if (visit(points[p].id, chord2(n, points[p].n))) return true;
-        if (++i == nbins) i = 0;
+      // most bins are empty, which no processor foresees: those that are not are told without a branch
+      for (int done = 0; done < count;) {
+        constexpr int ROOM = 8;
+        int filled[ROOM], number = 0;
+        for (const int end = std::min(count, done + ROOM); done < end; done++) {
+          filled[number] = heads[i];
+          number += heads[i] != NONE;
+          i = i + 1 == nbins ? 0 : i + 1;
+        }
+        for (int k = 0; k < number; k++)
+          for (int p = filled[k]; p != NONE; p = points[p].earlier)
+            if (visit(points[p].id, chord2(n, points[p].n))) return true;
       }
     }
     return false;
