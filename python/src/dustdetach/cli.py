@@ -48,7 +48,7 @@ _HELP = {
     "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential " + " or ".join(RINGING),
     "seed": "of the random texture",
     "tangential": "tangential lift-off: " + ", ".join(TANGENTIAL),
-    "timestep": "s (1/300 of the contact time, to two digits; 1e-9 in a resolved run)",
+    "timestep": "s (a share of the contact time, 1/300 in general; 1e-9 in a resolved run)",
 }
 _Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
 _TEXTURE = ("coverage", "bare", "grain_diameter", "carrier_diameter", "spread", "seed")

@@ -54,8 +54,10 @@ BARE_FROM_GEOMETRY = float("nan")
 #: in place of a time step that is not given: by the contact time, see `default_timestep`. No value of a user's either
 TIMESTEP_FROM_CONTACT = float("nan")
 
-#: steps in a contact of Hertz: dispersion ratios of both figures are within 0.001 of those at 1 ns
-CONTACT_STEPS = 300
+#: steps in a contact of Hertz: in general, at a restitution below `MUCH_DAMPED`, when damping is strongest at first
+#: touch, and where grains ring, or wall friction above `MUCH_FRICTION` shakes them, whatever the restitution
+CONTACT_STEPS, DAMPED_STEPS, RINGING_STEPS = 300, 1000, 3000
+MUCH_DAMPED, MUCH_FRICTION = 0.5, 0.1
 
 #: s, and what a resolved run takes where none is given
 LONGEST_TIMESTEP, RESOLVED_TIMESTEP = 1e-7, 1e-9
@@ -308,16 +310,22 @@ def hertz_contact_time(impact: Any) -> float:
 
 
 def default_timestep(impact: Any) -> float:
-    """The time step of an impact that is given none, s: 1/300 of `hertz_contact_time`, to two digits.
+    """The time step of an impact that is given none, s: a share of `hertz_contact_time`, to two digits.
 
-    At most 1e-7 s; 1e-9 s in a resolved run, whose grains move faster.
+    1/300 of it; 1/1000 at a restitution below 0.5; 1/3000 at a wall friction above 0.1, and where a law in `RINGING` is
+    given a damping ratio below 1. At most 1e-7 s. In a resolved run 1e-9 s.
 
     Args:
         impact: an `Impact`, or a result, which has the same parameters.
     """
     if impact.method == "resolved":
         return RESOLVED_TIMESTEP
-    return min(LONGEST_TIMESTEP, float(f"{hertz_contact_time(impact) / CONTACT_STEPS:.2g}"))
+    rings = impact.tangential in RINGING and impact.grain_damping < 1
+    if rings or impact.wall_friction > MUCH_FRICTION:
+        steps = RINGING_STEPS
+    else:
+        steps = CONTACT_STEPS if impact.restitution >= MUCH_DAMPED else DAMPED_STEPS
+    return min(LONGEST_TIMESTEP, float(f"{hertz_contact_time(impact) / steps:.2g}"))
 
 
 def bare_half_angle(carrier_diameter: float, grain_diameter: float) -> float:

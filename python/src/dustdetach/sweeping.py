@@ -294,14 +294,16 @@ def _work(out: Path, build: Build, cases: list[Impact], comm: Any = None) -> Wor
     began = time.monotonic()
     try:
         with Bench(comm) as bench:
-            while work.left and time.monotonic() - began < BATCH_SECONDS:
+            for case in cases:
                 try:
-                    work.results.append(bench.run(work.left[0]))
+                    work.results.append(bench.run(case))
                 except LammpsBusy:
                     raise
                 except InvalidInput as error:
-                    work.failures.append((work.left[0], str(error)))
+                    work.failures.append((case, str(error)))
                 del work.left[0]
+                if time.monotonic() - began > BATCH_SECONDS:
+                    break
     except DustError as error:
         work.stop = error
     if work.results:
