@@ -1,4 +1,4 @@
-"""What sweeps cost, against another checkout of this package: a thousand impacts, a thousand seeds, two processes, kills.
+"""What sweeps cost, against another checkout: a thousand impacts, a thousand seeds, two processes, kills.
 
     git worktree add /tmp/before COMMIT; (cd /tmp/before; ./bootstrap build)
     . build/environment; build/venv/bin/python benchmarks/sweep_cost.py --before /tmp/before [--repeat N] [--out FILE]

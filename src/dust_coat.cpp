@@ -94,8 +94,8 @@ double checksum_of(const Dust::Texture &texture)
   double sum = 0.0;
   int i = 0;
   for (const Dust::Grain &g : texture.grains)
-    sum += std::cos(++i) *
-        (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / texture.carrier_radius + (g.adhesion - 1.0));
+    sum +=
+        std::cos(++i) * (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / texture.carrier_radius + (g.adhesion - 1.0));
   return sum;
 }
 

@@ -375,8 +375,9 @@ std::shared_ptr<const Dust::Texture> DustOptions::monolayer(double radius) const
 {
   const Dust::BareCap cap = bare_cap(radius);
   const double *axis = cap.axis;
-  const std::vector<double> source = {radius,   double(distributed), diameter, double(sizes.kind), sizes.x50, sizes.spread,
-                                      coverage, double(seed),        spread,   cap.half_angle,     axis[0],   axis[1],
+  const std::vector<double> source = {radius,    double(distributed), diameter, double(sizes.kind),
+                                      sizes.x50, sizes.spread,        coverage, double(seed),
+                                      spread,    cap.half_angle,      axis[0],  axis[1],
                                       axis[2]};
   auto texture = kept_monolayer(source);
   int kept = texture != nullptr;    // other ranks may have run other instances

@@ -53,7 +53,7 @@ void order_in_patches(const std::vector<Grain> &grains, Place *first, Place *las
 // in all but its place
 bool is_like(const Grain &a, const Grain &b) { return a.radius == b.radius && a.adhesion == b.adhesion; }
 
-// of contacts with a damping ratio: most tables of a process have that of the last one, and it takes longer than the rest
+// of contacts with a damping ratio: most tables of a process have that of the last one, and finding it takes longest
 double overshoot_of(double damping)
 {
   if (damping < 0.0) return 0.0;

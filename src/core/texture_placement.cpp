@@ -126,8 +126,8 @@ class Placement {
     }
   }
 
-  // whether a grain is nearer to n than the chord of its radius, of grains that may be neighbours of one of this size, or
-  // a smaller one
+  // whether a grain is nearer to n than the chord that goes with its radius, of those that may be neighbours of one of
+  // this size, or a smaller one
   template <typename Chord2> bool any_near(const double *n, Chord2 chord2_of) const
   {
     return std::any_of(levels.begin(), levels.end(), [&](const Level &level) {

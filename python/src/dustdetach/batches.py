@@ -1,8 +1,8 @@
 """Results of a sweep on the disk, in batches: a file of many results is there complete or not at all.
 
-The first line of a batch says what computed it (version of this package, contents of LAMMPS' library, the plugin and the
-deck) and how many results follow, one a line. A digest of that is part of its name: results of another build are never
-taken for one's own.
+The first line of a batch says what computed it (version of this package, contents of LAMMPS' library, the plugin and
+the deck) and how many results follow, one a line. A digest of that is part of its name: results of another build are
+never taken for one's own.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from typing import Any
 
 from .errors import InvalidInput, shortened, shown
 from .files import as_path, read_text
-from .impact import METHODS, PARAMETERS, TIMESTEP_FROM_CONTACT, Impact, default_timestep
+from .impact import METHODS, PARAMETERS, Impact
 
 #: impact speeds of both figures, m/s: dense where the near side lets go (1-4) and the far side begins (5-8)
 SPEEDS = (
@@ -72,9 +72,7 @@ def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
 
 def _by(method: str, case: Impact) -> Impact:
     law = Impact.tangential if method == "resolved" else case.tangential
-    # each method has its own time step where none was asked for
-    timestep = TIMESTEP_FROM_CONTACT if case.timestep == default_timestep(case) else case.timestep
-    return replace(case, method=method, tangential=law, timestep=timestep)
+    return replace(case, method=method, tangential=law)
 
 
 def read_cases(path: str | Path) -> list[Impact]:

@@ -51,8 +51,13 @@ BARE_SPEED = 20.0
 #: in place of a bare cap that is not given: as wide as the diameters need it. No value that a user gives is this object
 BARE_FROM_GEOMETRY = float("nan")
 
-#: in place of a time step that is not given: by the contact time, see `default_timestep`. No value of a user's either
-TIMESTEP_FROM_CONTACT = float("nan")
+
+class Chosen(float):
+    """A value that nobody has asked for, and which is chosen anew when ``replace`` changes what it depends on."""
+
+
+#: in place of a time step that is not given: by the contact time, see `default_timestep`
+TIMESTEP_FROM_CONTACT = Chosen("nan")
 
 #: steps in a contact of Hertz: in general, at a restitution below `MUCH_DAMPED`, when damping is strongest at first
 #: touch, and where grains ring, or wall friction above `MUCH_FRICTION` shakes them, whatever the restitution
@@ -111,8 +116,8 @@ class Impact:
             resolved runs do not use it.
         rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs always
             follow it.
-        timestep: s, above 0 and at most 1e-7; by default as `default_timestep` has it. A resolved run also needs `LEAST_GRAIN_STEPS` in a
-            grain's oscillation.
+        timestep: s, above 0 and at most 1e-7; by default as `default_timestep` has it. A resolved run also needs
+            `LEAST_GRAIN_STEPS` in a grain's oscillation.
 
     Raises:
         InvalidInput: a value outside its range; the message names the option.
@@ -141,7 +146,7 @@ class Impact:
         for field in fields(self):
             # under `from __future__ import annotations` a field's type is its spelling
             value = getattr(self, field.name)
-            if value is not BARE_FROM_GEOMETRY and value is not TIMESTEP_FROM_CONTACT:
+            if value is not BARE_FROM_GEOMETRY and not isinstance(value, Chosen):
                 value = _convert(field.name, str(field.type), value)
             object.__setattr__(self, field.name, value)
 
@@ -171,8 +176,8 @@ class Impact:
                 + " or ".join(RINGING)
             )
         _from("seed", self.seed, 1, LARGEST_SEED)
-        if self.timestep is TIMESTEP_FROM_CONTACT:
-            object.__setattr__(self, "timestep", default_timestep(self))
+        if isinstance(self.timestep, Chosen):
+            object.__setattr__(self, "timestep", Chosen(default_timestep(self)))
         _above("timestep", self.timestep, 0.0, LONGEST_TIMESTEP, "s")
 
         if self.grains > MOST_GRAINS:
@@ -306,7 +311,7 @@ def hertz_contact_time(impact: Any) -> float:
     speed = impact.speed * math.sin(math.radians(impact.angle))
     mass = 4 / 3 * math.pi * radius**3 * CARRIER_DENSITY
     overlap = (15 * mass * speed**2 / (16 * CONTACT_MODULUS * math.sqrt(radius))) ** 0.4
-    return 2.9432 * float(overlap) / speed
+    return float(2.9432 * overlap / speed)
 
 
 def default_timestep(impact: Any) -> float:

@@ -171,7 +171,7 @@ class _Deck:
 
     @cached_property
     def asked(self) -> frozenset[str]:
-        """The words of the first part that may be variables whose values it takes, and does not only have defaults for."""
+        """Words of the first part that may be variables whose values it takes: not of those it gives defaults."""
         code = re.sub(r"^variable\s+\w+\s+index\b.*|#.*", "", self.setup, flags=re.MULTILINE)
         return frozenset(word.removeprefix("v_") for word in re.findall(r"\w+", code))
 
@@ -207,9 +207,7 @@ class _AtHand:
         """The commands that give the variables their new values."""
         gone = [f"variable {name} delete\n" for name, value in self.variables.items() if variables.get(name) != value]
         new = [
-            f"variable {name} index {value}\n"
-            for name, value in variables.items()
-            if self.variables.get(name) != value
+            f"variable {name} index {value}\n" for name, value in variables.items() if self.variables.get(name) != value
         ]
         self.variables = variables
         return "".join(gone + new)

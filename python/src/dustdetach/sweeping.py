@@ -331,9 +331,7 @@ def _in_this_process(
             left = work.left
 
 
-def _in_processes(
-    out: Path, build: Build, batches: list[list[Impact]], jobs: int, table: _Table
-) -> Iterator[Work]:
+def _in_processes(out: Path, build: Build, batches: list[list[Impact]], jobs: int, table: _Table) -> Iterator[Work]:
     """Work as it comes from processes that are started afresh: LAMMPS and MPI do not survive a fork."""
     import multiprocessing
     from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
