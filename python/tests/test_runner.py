@@ -209,7 +209,7 @@ def test_a_resolved_impact_fills_the_record(resolved_result):
 
 def test_few_grains_do_not_change_the_collision(resolved_impact, resolved_result):
     # all grains weigh 0.37 % of the carrier at a coverage of 0.2, and these a hundredth of that
-    functions = run(replace(resolved_impact, method="functions"))
+    functions = run(replace(resolved_impact, method="functions", timestep=1e-9))
     assert resolved_result.contact_time == pytest.approx(functions.contact_time, abs=2.5 * resolved_impact.timestep)
     assert resolved_result.peak_acceleration == pytest.approx(functions.peak_acceleration, rel=2e-4)
     assert resolved_result.restitution_realised == pytest.approx(functions.restitution_realised, rel=2e-4)
