@@ -9,7 +9,7 @@ from closed_form import collide, damping, hemispheres
 
 from dustdetach import Impact, InvalidInput, MachineFault, run
 from dustdetach.impact import default_timestep
-from dustdetach.runner import Bench
+from dustdetach.runner import Bench, _deck
 
 SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0)
 RESTITUTIONS = (0.5, 0.6, 0.7, 0.8, 0.9)
@@ -276,6 +276,11 @@ def test_a_refused_impact_does_not_spoil_the_next():
             assert without_seconds(bench.run(good)) == alone
             with pytest.raises(InvalidInput, match="cannot be placed"):
                 bench.run(hopeless)
+
+
+def test_what_lammps_is_opened_anew_for():
+    assert _deck("functions").asked == {"plugin", "carrier_diameter", "radius"}
+    assert _deck("resolved").setup == ""
 
 
 def test_seconds_are_those_of_each_impact():

@@ -171,9 +171,9 @@ class _Deck:
 
     @cached_property
     def asked(self) -> frozenset[str]:
-        """Words of the first part that may be variables whose values it takes: not of those it gives defaults."""
-        code = re.sub(r"^variable\s+\w+\s+index\b.*|#.*", "", self.setup, flags=re.MULTILINE)
-        return frozenset(word.removeprefix("v_") for word in re.findall(r"\w+", code))
+        """The variables whose values the first part takes."""
+        code = re.sub(r"#.*", "", self.setup)
+        return frozenset(re.findall(r"(?:\$\{|\bv_|variable,)(\w+)", code))
 
 
 @cache
