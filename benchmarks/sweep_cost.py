@@ -8,8 +8,9 @@ taken from start to table; those of both checkouts are run in turn, and of each 
 
 * impacts: 20 speeds, 10 angles, 5 restitutions, one texture; `same step` gives both the time step of 1 ns.
 * seeds: 1,000 of one impact.
-* jobs: 20,000 impacts by one process and by two (or ranks). The gain is that of the time that the busiest process takes
-  the processor, which is the time the sweep takes where there is a processor for each; the wall time is given, too.
+* jobs: 20,000 impacts by one process and by two (or ranks). Where there is a processor for each, the sweep takes what
+  the first process takes and half of what the others do: that is the gain by processor time. The wall time and the
+  machine's load are given, too; ranks that wait for each other take the processor meanwhile.
 * kills: a sweep is killed (kill -9) ten times at random, and its table compared with that of one that was not.
 """
 
@@ -88,6 +89,26 @@ def run(words: list[str]) -> tuple[float, float]:
     return usage.ru_utime + usage.ru_stime, wall
 
 
+#: runs the command and tells the processor time of its first process, s, and of those it has started
+TELL = """
+import json, resource, sys
+from dustdetach.cli import main
+if main(sys.argv[1:]) == 0:
+    usages = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    print(json.dumps([usage.ru_utime + usage.ru_stime for usage in usages]))
+"""
+
+
+def run_and_tell(checkout: Checkout, words: list[str]) -> tuple[float, float]:
+    """Processor time of a sweep's first process and of those it has started, s."""
+    environment = checkout.root / "build/environment"
+    python = checkout.root / "build/venv/bin/python"
+    line = f". '{environment}'; exec '{python}' -c \"$0\" \"$@\""
+    done = subprocess.run(["bash", "-c", line, TELL, *words[1:]], capture_output=True, text=True, check=True)
+    first, others = json.loads(done.stdout.splitlines()[-1])
+    return first, others
+
+
 def rows(out: Path) -> list[dict[str, str]]:
     """The table of a sweep without the columns that differ from run to run."""
     with open(out / "results.csv", newline="") as stream:
@@ -123,6 +144,7 @@ def measure_jobs(checkout: Checkout, repeat: int, work: Path) -> dict:
         ways["ranks"] = [*mpirun, *checkout.command(toml, work / "ranks", "--executor", "mpi")]
     processor: dict[str, list[float]] = {way: [] for way in ways}
     wall: dict[str, list[float]] = {way: [] for way in ways}
+    shared = []
     tables = {}
     for _ in range(repeat):
         for way, words in ways.items():
@@ -131,13 +153,17 @@ def measure_jobs(checkout: Checkout, repeat: int, work: Path) -> dict:
             wall[way].append(seconds)
             tables[way] = rows(work / way)
             shutil.rmtree(work / way)
-    one, cpu = statistics.median(wall["one"]), {way: statistics.median(values) for way, values in processor.items()}
+        first, others = run_and_tell(checkout, ways["two"])
+        shutil.rmtree(work / "two")
+        shared.append(first + others / 2)
+    cpu = {way: statistics.median(values) for way, values in processor.items()}
     result = {
         "impacts": len(tables["one"]),
         "processor_seconds": cpu,
+        "with_two_processors_free": statistics.median(shared),
+        "gain_processor": cpu["one"] / statistics.median(shared),
         "wall_seconds": {way: statistics.median(values) for way, values in wall.items()},
-        "gain_wall": {way: one / statistics.median(wall[way]) for way in ways if way != "one"},
-        "gain_processor": {way: 2 * cpu["one"] / cpu[way] for way in ways if way != "one"},
+        "load": os.getloadavg()[0],
         "same_table": all(table == tables["one"] for table in tables.values()),
     }
     print("jobs", json.dumps(result), flush=True)
@@ -152,7 +178,7 @@ def measure_kills(checkout: Checkout, work: Path, kills: int = 10) -> dict:
     chance, there, deaths = random.Random(7), [], 0
     while deaths < kills:
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        time.sleep(chance.uniform(0.3, 0.3 + 2 * whole / kills))
+        time.sleep(chance.uniform(0.2, 0.35 * whole))
         process.kill()
         deaths += process.wait() != 0
         lines = [path.read_text().count("\n") - 1 for path in (work / "killed").glob("[!.]*.jsonl")]

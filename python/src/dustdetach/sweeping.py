@@ -403,16 +403,18 @@ def _sweep_on_ranks(cases: list[Impact], folder: Path, build: Build, progress: P
             raise plan
         mine = _in_this_process(folder, build, plan[world.rank :: world.size], None, MPI.COMM_SELF)
         if table is None:
-            world.gather(list(mine))
-            answer = world.bcast(None)
+            _hand_in(mine, world, MPI.Request.testall)
+            _sleep_until(lambda: world.iprobe(source=0))
+            answer = world.recv(source=0)
         else:
-            done = _then_gather(mine, world)
+            done = _and_of_others(mine, world)
             try:
                 answer = _collect(cases, sum(map(len, plan)), done, table, progress)
             except DustError as error:
                 done.close()
                 answer = error
-            world.bcast(answer)
+            for rank in range(1, world.size):
+                world.send(answer, rank)
     except DustError:
         raise
     except Exception as error:
@@ -436,11 +438,32 @@ def _plan(
     return table, _batches([case for case in cases if not table.has(case)], ranks)
 
 
-def _then_gather(mine: Iterable[Work], world: Any) -> Generator[Work, None, None]:
-    """Rank 0's own work as it comes, then that of the others, who wait for this also if it is closed before."""
+def _hand_in(mine: Iterable[Work], world: Any, testall: Callable[[list[Any]], tuple[bool, Any]]) -> None:
+    """A rank's own work to rank 0 as it comes, then the word that this was all."""
+    sent = [world.isend(work, 0) for work in mine]
+    sent.append(world.isend(None, 0))
+    _sleep_until(lambda: testall(sent)[0])
+
+
+def _and_of_others(mine: Iterable[Work], world: Any) -> Generator[Work, None, None]:
+    """Rank 0's own work as it comes, then that of the others, who are waited for also if this is closed before."""
+    at_work = world.size - 1
     try:
         yield from mine
+        while at_work:
+            _sleep_until(world.iprobe)
+            theirs = world.recv()
+            if theirs is None:
+                at_work -= 1
+            else:
+                yield theirs
     finally:
-        others = world.gather([])[1:]
-    for done in others:
-        yield from done
+        while at_work:
+            _sleep_until(world.iprobe)
+            at_work -= world.recv() is None
+
+
+def _sleep_until(true: Callable[[], bool]) -> None:
+    """MPI itself waits with the processor busy, which others need."""
+    while not true():
+        time.sleep(0.01)
