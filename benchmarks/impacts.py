@@ -74,8 +74,13 @@ def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
 
 
 def of_law(case: Impact, law: str) -> Impact:
-    """By the functions with a law, some of which know nothing of a grain's damping."""
-    return replace(case, tangential=law, grain_damping=case.grain_damping if law in RINGING else Impact.grain_damping)
+    """By the functions with a law, some of which know nothing of a grain's damping, in the resolved run's steps."""
+    return replace(
+        case,
+        tangential=law,
+        grain_damping=case.grain_damping if law in RINGING else Impact.grain_damping,
+        timestep=float(replace(case, method="resolved").timestep),
+    )
 
 
 def decks(folder: Path) -> Path:

@@ -383,7 +383,7 @@ void FixDustDetach::record(int i)
     lost += coat.table->weight(d.bit);
     if (!collisions.work.locate) continue;
     const int number = coat.table->grain(d.bit);
-    const Dust::Grain &grain = coat.texture.grains[number];
+    const Dust::Grain &grain = coat.texture->grains[number];
     const double distance = carriers.radius[i] + grain.radius, *n = d.direction, *w = d.velocity;
     const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
     const double before = d.before_end / settings.stiffen_time;    // when it left: as the carrier moved then

@@ -121,7 +121,7 @@ def test_a_resolved_impact(command, tmp_path):
         (("--angle", "0"), "--angle: 0 is out of range"),
         (("--restitution", "0"), "--restitution: 0 is out of range; allowed: 0.01 to 1"),
         (("--timestep", "1e-7"), "--timestep: 1e-07 s makes"),
-        (("--speed", "1e-12"), "--timestep: 1e-09 s makes"),
+        (("--speed", "1e-12", "--timestep", "1e-9"), "--timestep: 1e-09 s makes"),
         (("--restitution", "1.2"), "--restitution: 1.2 is out of range"),
         (("--coverage", "0"), "--coverage: 0 is out of range; allowed: above 0 and at most 0.5"),
         (("--coverage", "-1"), "--coverage: -1 is out of range"),

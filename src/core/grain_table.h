@@ -10,6 +10,7 @@
 #include "texture.h"
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace Dust {
@@ -25,6 +26,9 @@ struct Material {
   double rolling = 0.15;    //!< theta_crit; IMPULSE and INTEGRATE use it
   //! damping ratio of the contact; these two then let grains ring (normal_motion.h), below 0 not
   double damping = -1.0;
+
+  auto all() const { return std::make_tuple(density, gamma, modulus, friction, rolling, damping); }
+  bool operator==(const Material &other) const { return all() == other.all(); }
 };
 
 /*! One texture made ready for evaluation: what each grain needs to leave. Shared by all carriers, never changed.

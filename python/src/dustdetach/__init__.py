@@ -5,6 +5,8 @@
 0.69
 """
 
+from typing import TYPE_CHECKING, Any
+
 from .cases import figure4, figure5, read_cases
 from .errors import DustError, InvalidInput, LammpsBusy, LammpsMissing, MachineFault, PackageMissing
 from .impact import Impact
@@ -12,8 +14,10 @@ from .result import Result, read_csv
 from .runner import run
 from .sweeping import CasesFailed, sweep
 from .tables import to_dataframe, write_parquet
-from .texture import Texture
 from .version import __version__
+
+if TYPE_CHECKING:
+    from .texture import Texture
 
 __all__ = [
     "CasesFailed",
@@ -36,3 +40,12 @@ __all__ = [
     "to_dataframe",
     "write_parquet",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Textures are arrays, and numpy takes longer to import than all the rest: not before somebody asks for them."""
+    if name == "Texture":
+        from .texture import Texture
+
+        return Texture
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -19,7 +19,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .errors import InvalidInput
 from .files import as_path, replace_file
-from .impact import Impact
+from .impact import Impact, is_timestep_chosen
 from .parameters import ABOUT, FASTEST, PARAMETERS
 from .result import Result, read_csv
 from .sweeping import TABLE
@@ -219,6 +219,8 @@ def _curves(results: list[Result]) -> dict[Curve, list[Result]]:
 def _differing(results: list[Result]) -> list[str]:
     found = [name for name in _TELLING if len({getattr(result, name) for result in results}) > 1]
     # what follows from others that differ is no word of a legend
+    if is_timestep_chosen(results):
+        found = [name for name in found if name != "timestep"]
     given = [name for name in found if not ABOUT[name].follows]
     return [name for name in found if name in given or not _told(results, name, given)]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 from .about import Derived, DerivedWord, converted, given, option
 from .errors import InvalidInput, shown
 from .materials import Material, find_material
-from .parameters import ABOUT, DISTRIBUTIONS, OWN, PARAMETER_TYPES, RINGING, Parameters
+from .parameters import ABOUT, DISTRIBUTIONS, LONGEST_TIMESTEP, OWN, PARAMETER_TYPES, RINGING, Parameters
 
 #: share of a surface that random sequential placement of discs covers before it jams
 JAMMING = 0.547
@@ -24,6 +24,14 @@ GRAVITY, LARGEST_SURFACE_ENERGY = 9.81, 10.0
 
 #: largest overlap over the carrier's radius of steel on steel at 20 m/s, which the default of the bare cap allows for
 BARE_OVERLAP = 0.025597
+
+#: steps in a contact of Hertz: in general, at a restitution below `MUCH_DAMPED`, when damping is strongest at first
+#: touch, and where grains ring, or wall friction above `MUCH_FRICTION` shakes them, whatever the restitution
+CONTACT_STEPS, DAMPED_STEPS, RINGING_STEPS = 300, 1000, 3000
+MUCH_DAMPED, MUCH_FRICTION = 0.5, 0.1
+
+#: s, what a resolved run takes where none is given
+RESOLVED_TIMESTEP = 1e-9
 
 #: time steps that resolve an oscillation of a grain on its carrier
 LEAST_GRAIN_STEPS = 30
@@ -56,7 +64,7 @@ class Impact(Parameters):
     """A carrier with a monolayer of dust hits a rigid wall: `Parameters` that have been checked.
 
     A parameter that is not given and follows from others (``bare``, the numbers of the materials, the Hamaker
-    constants and the surface energy) is filled in, and follows again in `dataclasses.replace`.
+    constants, the surface energy and the time step) is filled in, and follows again in `dataclasses.replace`.
 
     Raises:
         InvalidInput: a value outside its range; the message names the option.
@@ -81,6 +89,7 @@ class Impact(Parameters):
                 + " or ".join(RINGING)
             )
         self._check_spin()
+        self._fill("timestep", default_timestep(self))
         steps = self.hertz_contact_time / self.timestep
         if not LEAST_STEPS <= steps <= MOST_STEPS:
             raise InvalidInput(
@@ -280,8 +289,8 @@ class Impact(Parameters):
 
     @property
     def contact_modulus(self) -> float:
-        """E* of carrier and wall, 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2, Pa."""
-        return combined_modulus(self.carrier_modulus, self.carrier_poisson, self.wall_modulus, self.wall_poisson)
+        """E* of carrier and wall, Pa."""
+        return contact_modulus(self)
 
     @property
     def adhesion_modulus(self) -> float:
@@ -324,15 +333,8 @@ class Impact(Parameters):
 
     @property
     def hertz_contact_time(self) -> float:
-        """Contact time of the undamped impact (Hertz), s.
-
-        2.9432 overlap/speed with overlap = (15 m v^2/(16 E* sqrt(R)))^0.4 and the speed normal to the wall.
-        """
-        radius = self.carrier_diameter / 2
-        speed = self.speed * math.sin(math.radians(self.angle))
-        mass = 4 / 3 * math.pi * radius**3 * self.carrier_density
-        overlap = (15 * mass * speed**2 / (16 * self.contact_modulus * math.sqrt(radius))) ** 0.4
-        return 2.9432 * float(overlap) / speed
+        """Contact time of the undamped impact (Hertz), s; see `hertz_contact_time`."""
+        return hertz_contact_time(self)
 
     @property
     def grains(self) -> int:
@@ -390,6 +392,59 @@ class Impact(Parameters):
 def combined_modulus(modulus: float, poisson: float, other_modulus: float, other_poisson: float) -> float:
     """E* of two materials, 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2, Pa."""
     return 1 / ((1 - poisson**2) / modulus + (1 - other_poisson**2) / other_modulus)
+
+
+def contact_modulus(case: Parameters) -> float:
+    """E* of carrier and wall, Pa.
+
+    Args:
+        case: an impact or its result.
+    """
+    return combined_modulus(case.carrier_modulus, case.carrier_poisson, case.wall_modulus, case.wall_poisson)
+
+
+def hertz_contact_time(case: Parameters) -> float:
+    """Contact time of an undamped impact (Hertz), s.
+
+    2.9432 overlap/speed with overlap = (15 m v^2/(16 E* sqrt(R)))^0.4, E* of carrier and wall, and the speed normal to
+    the wall.
+
+    Args:
+        case: an impact or its result.
+    """
+    radius = case.carrier_diameter / 2
+    speed = case.speed * math.sin(math.radians(case.angle))
+    mass = 4 / 3 * math.pi * radius**3 * case.carrier_density
+    overlap = (15 * mass * speed**2 / (16 * contact_modulus(case) * math.sqrt(radius))) ** 0.4
+    return float(2.9432 * overlap / speed)
+
+
+def default_timestep(case: Parameters) -> float:
+    """The time step of an impact that is given none, s: a share of `hertz_contact_time`, to two digits.
+
+    1/300 of it; 1/1000 at a restitution below 0.5; 1/3000 at a wall friction above 0.1, and where a law in `RINGING` is
+    given a damping ratio below 1. At most 1e-7 s. In a resolved run 1e-9 s.
+
+    Args:
+        case: an impact or its result.
+    """
+    if case.method == "resolved":
+        return RESOLVED_TIMESTEP
+    rings = case.tangential in RINGING and case.grain_damping < 1
+    if rings or case.wall_friction > MUCH_FRICTION:
+        steps = RINGING_STEPS
+    else:
+        steps = CONTACT_STEPS if case.restitution >= MUCH_DAMPED else DAMPED_STEPS
+    return min(LONGEST_TIMESTEP, float(f"{hertz_contact_time(case) / steps:.2g}"))
+
+
+def is_timestep_chosen(cases: Iterable[Parameters]) -> bool:
+    """Whether nobody has asked for the time steps: each is `default_timestep`, whatever else differs.
+
+    Args:
+        cases: impacts or results.
+    """
+    return all(case.timestep == default_timestep(case) for case in cases)
 
 
 def _normal_quantile(fraction: float) -> float:

@@ -21,6 +21,9 @@ FASTEST = 100.0
 
 LARGEST_SEED = 900_000_000
 
+#: s
+LONGEST_TIMESTEP = 1e-7
+
 #: what the reference case is made of
 CARRIER, WALL, GRAIN = (DerivedWord(name) for name in ("stainless steel", "stainless steel", "limestone"))
 
@@ -289,8 +292,17 @@ class Parameters:
         ),
     )
     timestep: float = field(
-        default=1e-9,
-        metadata=about("time step", unit="s", above=0.0, most=1e-7, symbol=r"$\Delta t$", figure_unit="ns", factor=1e9),
+        default=FOLLOWS,
+        metadata=about(
+            "time step",
+            unit="s",
+            above=0.0,
+            most=LONGEST_TIMESTEP,
+            follows="a share of the contact time, 1/300 in general; 1e-9 in a resolved run",
+            symbol=r"$\Delta t$",
+            figure_unit="ns",
+            factor=1e9,
+        ),
     )
 
     def values(self) -> dict[str, str | bool | int | float]:

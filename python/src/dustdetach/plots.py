@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from .about import option
 from .errors import InvalidInput, shown
 from .figures import COLOUR_MAP, COLOURS, MARKERS, STYLE, fixed_words, save, table_of
+from .impact import is_timestep_chosen
 from .parameters import ABOUT, PARAMETER_TYPES, PARAMETERS
 from .result import COLUMNS, Result
 
@@ -126,6 +127,8 @@ def varied(results: Sequence[Result]) -> list[str]:
     found = [name for name in PARAMETERS if ABOUT[name].symbol and len(values_of(results, name)) > 1]
     if len({row.method for row in results}) > 1:
         found.append("method")
+    if is_timestep_chosen(results):
+        found = [name for name in found if name != "timestep"]
     return [name for name in found if not (ABOUT[name].follows and _follows_from(results, name, found))]
 
 

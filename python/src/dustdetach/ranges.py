@@ -19,13 +19,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any
 
 from .about import finite_number
 from .errors import InvalidInput, shown
+
+if TYPE_CHECKING:
+    from numpy import float64
+    from numpy.typing import NDArray
 
 DISTRIBUTIONS = ("uniform", "normal", "lognormal")
 SAMPLINGS = ("latin hypercube", "sobol")
@@ -200,14 +201,15 @@ class Sampling:
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-def values_at(shares: NDArray[np.float64], kind: str, a: float, b: float) -> NDArray[np.float64]:
+def values_at(shares: NDArray[float64], kind: str, a: float, b: float) -> NDArray[float64]:
     """The values of a distribution below which there are these shares of it."""
+    from numpy import asarray
     from scipy.stats import norm
 
     if kind == "uniform":
-        return np.asarray(a + (b - a) * shares)
+        return asarray(a + (b - a) * shares)
     deviations = norm.ppf(shares)
-    return np.asarray(a + b * deviations if kind == "normal" else a * b**deviations)
+    return asarray(a + b * deviations if kind == "normal" else a * b**deviations)
 
 
 def checked(name: str, value: Mapping[str, Any]) -> tuple[str, float, float]:

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from .about import option
+from .batches import builds_in
 from .columns import DetachRow
 from .errors import InvalidInput
 from .files import as_path, read_text, replace_file, scratch_folder
-from .impact import PARTS, Impact
+from .impact import PARTS, Impact, is_timestep_chosen
 from .parameters import ABOUT, PARAMETER_TYPES, PARAMETERS, Parameters
 from .result import COLUMNS, KEYS, Result, described_materials, read_csv
 from .runner import run
@@ -67,6 +68,8 @@ def write_report(folder: str | Path, out: str | Path | None = None) -> Path:
 
 def _page(folder: Path, results: list[Result]) -> str:
     varied = [name for name in PARAMETERS if len({getattr(row, name) for row in results}) > 1]
+    if is_timestep_chosen(results):
+        varied = [name for name in varied if name != "timestep"]
     carriers = _carriers(results)
     parts = {
         "TITLE": html.escape(_title(results)),
@@ -215,13 +218,9 @@ def _provenance(folder: Path, results: list[Result]) -> list[str]:
         f"dustdetach {__version__}, LAMMPS {versions}; report written {datetime.now(UTC):%Y-%m-%d %H:%M} UTC.",
         f"Seeds of textures: {', '.join(str(seed) for seed in sorted({row.seed for row in results}))}.",
     ]
-    builds = {path.read_text() for path in sorted(folder.glob("*/build.json"))[:MOST_ROWS]}
-    for text in sorted(builds):
-        try:
-            known = json.loads(text)
-        except ValueError:
-            continue
-        lines.append("Digests: " + ", ".join(f"{key} {value}" for key, value in known.items()) + ".")
+    lines += [
+        "Digests: " + ", ".join(f"{key} {value}" for key, value in build.items()) + "." for build in builds_in(folder)
+    ]
     lines.append("To repeat one impact: " + command_of(results[0]))
     lines.append("To repeat all: dustdetach sweep sweep.toml --out DIR, with the file below.")
     return lines

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 from html import escape
 from io import StringIO
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, cast
 
@@ -159,25 +160,12 @@ def described_materials(case: Parameters) -> list[str]:
     ]
 
 
-def read_result(path: Path) -> Result:
-    """Read what `Result.to_json` wrote into a file.
-
-    Raises:
-        InvalidInput: no such file, or it is cut or another one; the message names it.
-    """
-    text = read_text(path)
-    try:
-        return Result.from_json(text)
-    except InvalidInput as error:
-        raise InvalidInput(f"{path}: {error}") from None
-
-
 def write_csv(path: Path, results: Iterable[Result]) -> None:
     """Write one row a case, complete or not at all; an absent value is an empty field."""
     with replace_file(path) as part, open(part, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, KEYS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(result.columns() for result in results)
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(KEYS)
+        writer.writerows(map(attrgetter(*KEYS), results))
 
 
 def read_csv(path: str | Path) -> list[Result]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,7 @@ from numpy.typing import NDArray
 from .columns import DetachRow, Mode
 from .errors import InvalidInput, shown
 from .files import as_path, read_text
-from .impact import Impact
-from .texture import make_texture, read_texture
+from .texture import read_texture
 
 
 def read_fates(path: str | Path, grains: int) -> NDArray[np.int64]:
@@ -38,20 +38,18 @@ def read_fates(path: str | Path, grains: int) -> NDArray[np.int64]:
     return fates
 
 
-def mass_shares(impact: Impact, events: Path, change: NDArray[np.float64], texture: Path) -> dict[str, float]:
+def mass_shares(events: Path, change: Sequence[float], texture: Path) -> dict[str, float]:
     """The detached mass of each hemisphere and criterion over the initial one.
 
     Args:
-        impact: the parameters.
-        events: what `run` wrote of the impact.
+        events: what LAMMPS wrote of the impact.
         change: v_rebound - v_contact (3,), m/s.
-        texture: a file to write the grains to.
+        texture: the file that the fix wrote the grains to.
     """
-    make_texture(impact, texture)
     grains = read_texture(texture)
     fates = read_fates(events, len(grains.diameters))
     masses = grains.diameters**3 / np.sum(grains.diameters**3)
-    north = grains.directions @ change > 0
+    north = grains.directions @ np.asarray(change) > 0
     off = fates != Mode.ATTACHED
     return {
         "north": float(np.sum(masses[off & north])),
