@@ -339,14 +339,14 @@ def _sweep(options: argparse.Namespace, speaks: bool) -> int:
 
 
 def _progress() -> Callable[[int, int, float], None]:
-    """Cases done and time left, off a terminal at the start and at each tenth of the way."""
+    """Cases done, pace and time left, off a terminal at the start and at each tenth of the way."""
     line = _StatusLine()
 
     def tell(done: int, total: int, left: float) -> None:
+        pace = f"{(total - done) / left:.3g} a second, " if left else ""
         # marks from 1: the start is one
-        line.tell(
-            f"{done}/{total} cases, {left:.0f} s left", 1 + 10 * done // max(total, 1), "\n" if done == total else ""
-        )
+        mark = 1 + 10 * done // max(total, 1)
+        line.tell(f"{done}/{total} cases, {pace}{left:.0f} s left", mark, "\n" if done == total else "")
 
     return tell
 
