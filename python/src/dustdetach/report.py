@@ -30,7 +30,7 @@ PAGE = Path(__file__).with_name("report.html")
 NAME = "report.html"
 
 #: carriers that can be turned, and grains of all of them: 9 bytes each, a third more in base64
-MOST_CARRIERS, MOST_GRAINS = 8, 150_000
+MOST_CARRIERS, MOST_GRAINS = 8, 100_000
 
 #: a larger table would make a file that is too large to mail
 MOST_ROWS = 3000
@@ -72,7 +72,7 @@ def _page(folder: Path, results: list[Result]) -> str:
         "TITLE": html.escape(_title(results)),
         "QUESTION": _paragraphs(_question(results, varied)),
         "ASSUMPTIONS": _list(_assumptions(results, varied)),
-        "FIGURES": "\n".join(_figures(results)) or "<p>One speed alone makes no curve.</p>",
+        "FIGURES": "\n".join(_figures(folder, results)) or "<p>One speed alone makes no curve.</p>",
         "WARNINGS": _list(_warnings(results)) or "<p>None.</p>",
         "PROVENANCE": _list(_provenance(folder, results)),
         "SWEEP": html.escape(sweep_file(results)),
@@ -80,13 +80,20 @@ def _page(folder: Path, results: list[Result]) -> str:
             {
                 "columns": [{"name": key, "unit": COLUMNS[key].unit, "help": COLUMNS[key].help} for key in KEYS],
                 "shown": [*varied, *SHOWN],
-                "rows": [[getattr(row, key) for key in KEYS] for row in results],
+                "count": len(results),
+                "values": [_values(results, key) for key in KEYS],
                 "carriers": carriers,
             }
         ),
     }
     text = read_text(PAGE)
     return re.sub(r"@@([A-Z]+)@@", lambda match: parts[match[1]], text)
+
+
+def _values(results: list[Result], key: str) -> list[Any]:
+    """A column's values; one alone if they are all the same."""
+    values = [getattr(row, key) for row in results]
+    return values[:1] if all(value == values[0] for value in values) else values
 
 
 def _json(data: object) -> str:
@@ -285,13 +292,18 @@ def sweep_file(results: Iterable[Parameters]) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def _figures(results: list[Result]) -> list[str]:
+def _figures(folder: Path, results: list[Result]) -> list[str]:
     """The plots of the folder as SVG elements."""
     from .figures import draw_all
 
     with scratch_folder(1 << 24) as scratch:
-        paths = [path for path in draw_all(results, scratch) if path.suffix == ".svg"]
-        return [f"<figure>{path.read_text()[path.read_text().index('<svg') :]}</figure>" for path in paths]
+        try:
+            paths = draw_all(folder / TABLE, results, scratch)
+        except InvalidInput:
+            # one speed alone
+            return []
+        texts = [path.read_text() for path in paths if path.suffix == ".svg"]
+        return [f"<figure>{text[text.index('<svg') :]}</figure>" for text in texts]
 
 
 def _carriers(results: list[Result]) -> list[dict[str, Any]]:
