@@ -129,8 +129,10 @@ def _span(results: list[Result], name: str) -> str:
     unit = unit or about.unit
     shown = [f"{value * factor:.4g}" if isinstance(value, float) else str(value) for value in values]
     gap = "" if unit == "°" else " "
-    words = ", ".join(shown) if len(shown) <= 6 else f"{shown[0]} to {shown[-1]} ({len(shown)} values)"
-    return f"{words}{gap + unit if unit else ''}"
+    words, number = ", ".join(shown), ""
+    if len(shown) > 6:
+        words, number = f"{shown[0]} to {shown[-1]}", f" ({len(shown)} values)"
+    return f"{words}{gap + unit if unit else ''}{number}"
 
 
 def _question(results: list[Result], varied: Sequence[str]) -> list[str]:
@@ -147,8 +149,8 @@ def _question(results: list[Result], varied: Sequence[str]) -> list[str]:
     if len(results) > 1:
         said.append(
             f"The dispersion ratio, detached over initial dust mass, is {low.dispersion_ratio:.3f} at the least "
-            f"({low.speed:g} m/s, {low.angle:g} degrees) and {high.dispersion_ratio:.3f} at the most "
-            f"({high.speed:g} m/s, {high.angle:g} degrees)."
+            f"({low.speed:.4g} m/s, {low.angle:.4g} degrees) and {high.dispersion_ratio:.3f} at the most "
+            f"({high.speed:.4g} m/s, {high.angle:.4g} degrees)."
         )
     else:
         said.append(f"The dispersion ratio, detached over initial dust mass, is {first.dispersion_ratio:.3f}.")
@@ -339,7 +341,7 @@ def _carrier(row: Result) -> dict[str, Any]:
         times = _times(folder / "events", len(texture.diameters), impact.timestep)
     note = "" if row.method == "functions" else " (resolved; shown: the functions of the same impact)"
     return {
-        "label": f"{row.speed:g} m/s, {row.angle:g} degrees, restitution {row.restitution:g}: ratio "
+        "label": f"{row.speed:.4g} m/s, {row.angle:.4g} degrees, restitution {row.restitution:.4g}: ratio "
         f"{result.dispersion_ratio:.3f}{note}",
         "angle": row.angle,
         "contact": result.contact_time * 1e6,
