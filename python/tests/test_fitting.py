@@ -137,7 +137,17 @@ def test_how_bad_one_force_is_and_how_far_a_spread_mends_it(command, tmp_path):
     assert "mends" in printed["goodness"]
 
 
-def test_a_fit_of_a_sweep_of_ones_own(figures_folder, command):
+def test_a_table_of_a_sweep_is_data(tmp_path, command):
+    (tmp_path / "sweep.toml").write_text(
+        "speed = { from = 4, to = 12, by = 2 }\nz0 = 0.3e-9\ncarrier = 'glass'\ngrain_density = 2600\n"
+    )
+    assert command("sweep", "sweep.toml", "--out", "out").returncode == 0
+    printed = json.loads(command("fit", "out/results.csv", "--free", "z0", "--json").stdout)
+    assert printed["z0"]["value"] == pytest.approx(0.3e-9, rel=0.01)
+    assert (printed["fixed"]["carrier"], printed["fixed"]["grain_density"]) == ("glass", 2600)
+
+
+def test_a_sweep_by_other_laws_is_none(figures_folder, command):
     picture = figures_folder / "fit.png"
     words = ("fit", figures_folder / "results.csv", "--free", "z0", "--json", "--picture", picture)
     process = command(*words)
@@ -156,6 +166,7 @@ def test_a_fit_of_a_sweep_of_ones_own(figures_folder, command):
         ("speed,dispersion_ratio\n4,.5\n8,.71\n", (), "2 points for 2 parameters leave nothing to judge them by"),
         ("speed,dispersion_ratio\n", (), "no points"),
         ("speed,dispersion_ratio\n2,1\n4,1\n6,1\n", ("--free", "z0"), "The data do not tell z0: any value above"),
+        ("speed,dispersion_ratio\n1,0\n2,0\n3,0\n4,0\n", (), "The data do not tell z0: any value below"),
         ("speed,ratio\n2,1\n", (), "no column dispersion_ratio"),
         ("speed,colour,dispersion_ratio\n2,3,1\n", (), "'colour': unknown column"),
         ("speed,speed,dispersion_ratio\n2,3,1\n", (), "speed: two columns of this name"),

@@ -115,6 +115,15 @@ def test_thirty_curves_have_a_scale_of_colours(row, tmp_path, drawn):
     assert drawn[0].axes[-1].get_ylabel() == r"Angle to the wall $\alpha$ (°)"
 
 
+def test_hundreds_of_values_are_points(row, tmp_path, drawn):
+    rows = [made(row, speed=2.0 + k / 100, angle=30.0 + k / 10) for k in range(100)]
+    plot_by(table(tmp_path, rows), x="speed")
+    assert lines(drawn[0]) == 0
+    assert len(drawn[0].axes[0].collections[0].get_offsets()) == 100
+    # also where figures by speed are asked for, whose legend would have a hundred lines
+    assert [path.name for path in plot(tmp_path)] == ["plot-speed-angle.png", "plot-speed-angle.svg"]
+
+
 def test_maps(row, tmp_path, drawn):
     rows = [made(row, **case, seed=seed) for case in GRID for seed in (1, 2)]
     names = [path.name for path in plot_map(table(tmp_path, rows), "speed", "angle")]

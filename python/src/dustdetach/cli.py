@@ -20,6 +20,7 @@ from typing import NoReturn, TypeAlias
 
 from .about import option
 from .cases import NAMED, json_schema, named_or_file, with_methods
+from .completion import SHELLS, completion
 from .errors import DustError, InvalidInput, one_line, shown
 from .files import writable_file
 from .impact import Impact
@@ -165,6 +166,9 @@ def _parser() -> argparse.ArgumentParser:
     shown_materials.add_argument("names", nargs="*", metavar="NAME", help="these alone")
     _add_materials(shown_materials)
     shown_materials.add_argument("--json", action="store_true", help="print one JSON object")
+
+    complete = _command(commands, "completion", "a script that completes commands and options in a shell", _completion)
+    complete.add_argument("shell", metavar="|".join(SHELLS))
 
     _command(commands, "schema", "JSON Schema of a sweep's TOML file, for editors", _schema)
 
@@ -335,14 +339,14 @@ def _sweep(options: argparse.Namespace, speaks: bool) -> int:
 
 
 def _progress() -> Callable[[int, int, float], None]:
-    """Cases done and time left, off a terminal at the start and at each tenth of the way."""
+    """Cases done, pace and time left, off a terminal at the start and at each tenth of the way."""
     line = _StatusLine()
 
     def tell(done: int, total: int, left: float) -> None:
+        pace = f"{(total - done) / left:.3g} a second, " if left else ""
         # marks from 1: the start is one
-        line.tell(
-            f"{done}/{total} cases, {left:.0f} s left", 1 + 10 * done // max(total, 1), "\n" if done == total else ""
-        )
+        mark = 1 + 10 * done // max(total, 1)
+        line.tell(f"{done}/{total} cases, {pace}{left:.0f} s left", mark, "\n" if done == total else "")
 
     return tell
 
@@ -491,6 +495,13 @@ def _materials(options: argparse.Namespace, _: bool) -> int:
             value = getattr(each, key)
             if value is not None:
                 print(f"  {key:8} {f'{value:g} {about.unit}'.strip():14} {each.sources[key]}")
+    return 0
+
+
+def _completion(options: argparse.Namespace, _: bool) -> int:
+    if options.shell not in SHELLS:
+        raise InvalidInput(f"{shown(options.shell)}: unknown shell; allowed: {', '.join(SHELLS)}")
+    print(completion(_parser(), options.shell), end="")
     return 0
 
 

@@ -30,6 +30,8 @@ _TELLING = tuple(name for name in PARAMETERS if ABOUT[name].symbol and name not 
 #: colours that colour-blind readers can tell apart (Okabe and Ito 2008)
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+#: more curves than these in a figure by speed could not be told apart by a legend
+MOST_CURVES = 30
 #: for more curves than these: from dark to light in the order of the curves, in a map even to the eye
 COLOUR_MAP = "viridis"
 FORMATS = ("png", "svg")
@@ -81,11 +83,7 @@ def plot(folder: str | Path) -> list[Path]:
         InvalidInput: no table, or nothing in it that makes a curve.
     """
     path, results = table_of(folder)
-    if not draw_all_of(results):
-        raise InvalidInput(
-            f"{path}: no curve to draw: at least two speeds are needed, or --x with another parameter that varies"
-        )
-    return draw_all(results, path.parent)
+    return draw_all(path, results, path.parent)
 
 
 def table_of(folder: str | Path) -> tuple[Path, list[Result]]:
@@ -120,10 +118,22 @@ def draw_all_of(results: list[Result]) -> dict[str, list[Result]]:
     return figures
 
 
-def draw_all(results: list[Result], folder: Path) -> list[Path]:
-    """Draw every figure that results make into a folder."""
+def draw_all(path: Path, results: list[Result], folder: Path) -> list[Path]:
+    """Draw every figure that the rows of a table make into a folder, by any parameter if these make too many curves.
+
+    Raises:
+        InvalidInput: they make no curve.
+    """
     figures = draw_all_of(results)
-    return [path for name in sorted(figures) for path in draw(figures[name], folder / name)]
+    if any(len(_curves(rows)) > MOST_CURVES for rows in figures.values()):
+        from .plots import draw_by
+
+        return draw_by(path, results, folder)
+    if not figures:
+        raise InvalidInput(
+            f"{path}: no curve to draw: at least two speeds are needed, or --x with another parameter that varies"
+        )
+    return [file for name in sorted(figures) for file in draw(figures[name], folder / name)]
 
 
 def _check(row: Result, table: Path) -> None:

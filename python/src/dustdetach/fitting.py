@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from .about import option
 from .errors import InvalidInput, shown
 from .files import as_path, read_text
-from .impact import Impact
+from .impact import PARTS, Impact
+from .materials import is_known
 from .parameters import ABOUT, PARAMETER_TYPES
 from .response import Curves, Places, Polygon
 from .result import COLUMNS
@@ -173,6 +174,8 @@ def read_data(path: str | Path, free: Sequence[str], fixed: Mapping[str, Any]) -
             if None in row or None in row.values():
                 raise InvalidInput(f"{where}: {len(names)} columns are named, and not so many fields")
             values = {name: _value(where, name, row[name]) for name in taken}
+            if "lammps_version" in names:
+                values = {name: value for name, value in values.items() if name not in PARTS or is_known(value)}
             try:
                 impacts.append(Impact.from_mapping({"seed": 1, **fixed, **values}))
             except InvalidInput as error:
@@ -211,9 +214,6 @@ def _columns_taken(names: Sequence[str], free: Sequence[str]) -> list[str]:
             "grain_hamaker",
             "bare",
             "grain_damping",
-            "carrier",
-            "wall",
-            "grain",
         }
     return [name for name in names if name in ABOUT and name not in ignored]
 
@@ -381,7 +381,8 @@ def fit(data: Data, free: Sequence[str] = ("z0", "spread")) -> Fit:
     spread = (rms, at["spread"]) if "spread" in at else _other_spread(data, free, with_spread=True)
     words = [_quality(data, predicted, len(free)), *_about_spread(free, rms, alike, spread)]
     words += [f"The data do not tell {name}: {reason}." for name, reason in untold.items()]
-    if not estimates:
+    if not estimates or set(untold) & set(ADHESION):
+        # what a spread or friction is without the force that it belongs to is nothing to rely on
         raise InvalidInput(
             f"{data.source}: {' '.join(words)} allowed: fewer of --free, or data at more speeds, angles or spins"
         )

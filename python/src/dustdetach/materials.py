@@ -63,6 +63,11 @@ def materials() -> list[Material]:
     return list({id(material): material for material in {**_library(), **_own}.values()}.values())
 
 
+def is_known(name: str) -> bool:
+    """Whether there is a material of this name."""
+    return name.lower() in {**_library(), **_own}
+
+
 def find_material(name: str, part: str) -> Material:
     """A material by one of its names, in capitals or small letters.
 

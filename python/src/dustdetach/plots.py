@@ -30,6 +30,8 @@ from .result import COLUMNS, Result
 MOST_STYLES = 6
 #: more panels, or more values by colours of their own, could not be read
 MOST_PANELS, MOST_COLOURS = 12, 7
+#: more values of the colour's parameter than these are points, not curves
+MOST_CURVES = 60
 #: share of the rows in a band
 BAND = (5, 95)
 
@@ -66,6 +68,20 @@ def plot_by(
         InvalidInput: no table, or a parameter that does not vary or is none.
     """
     path, results = table_of(folder)
+    return draw_by(path, results, Path(folder), x=x, color=color, panel=panel, y=y)
+
+
+def draw_by(
+    path: Path,
+    results: Sequence[Result],
+    out: Path,
+    *,
+    x: str | None = None,
+    color: str | None = None,
+    panel: str | None = None,
+    y: str = "dispersion_ratio",
+) -> list[Path]:
+    """Draw curves of the rows of a table into a folder, see `plot_by`."""
     if y not in DRAWN:
         raise InvalidInput(f"--y: unknown choice {shown(y)}; allowed: {', '.join(DRAWN)}")
     differing = varied(results)
@@ -76,7 +92,7 @@ def plot_by(
         raise InvalidInput(f"{path}: no curve to draw: no number varies; allowed: a sweep over one")
     left = [name for name in differing if name not in (x, color, panel, "seed")]
     left.sort(key=lambda name: -len(values_of(results, name)))
-    if color is None and left and len(values_of(results, left[0])) <= 60:
+    if color is None and left and (len(values_of(results, left[0])) <= MOST_CURVES or len(left) == 1):
         color = left.pop(0)
     few = [name for name in left if len(values_of(results, name)) <= MOST_STYLES]
     if panel is None and few and few[0] != "method":
@@ -89,7 +105,7 @@ def plot_by(
     stem = "-".join(("plot", *(name for name in (y, x, color, panel) if name and name != "dispersion_ratio")))
     with plt.rc_context(STYLE):
         figure = _draw_curves(results, x, color, panel, styled, y)
-        return save(figure, Path(folder) / stem)
+        return save(figure, out / stem)
 
 
 def plot_map(folder: str | Path, x: str, y: str, panel: str | None = None) -> list[Path]:
@@ -201,13 +217,16 @@ def _draw_curves(
     banded = False
     for axes, title, rows in panels:
         axes.set_title(title)
+        axes.set_xlabel(ABOUT[x].axis)
+        if color and len(colours) > MOST_CURVES:
+            _points(axes, rows, x, y, [colours[getattr(row, color)][0] for row in rows])
+            continue
         groups = defaultdict(list)
         for row in rows:
             groups[getattr(row, color) if color else None, _key(row, styled)].append(row)
         for (value, key), group in sorted(groups.items(), key=lambda item: str(item[0])):
             look = {"color": colours[value][0], "linestyle": LINE_STYLES[styles[key] % len(LINE_STYLES)]}
             banded |= _curve(axes, group, x, y, look, colours[value][1])
-        axes.set_xlabel(ABOUT[x].axis)
     panels[0][0].set_ylabel(COLUMNS[y].axis)
     _add_key(figure, results, color, colours, styled, styles)
     _add_foot(figure, results, [x, color, panel, *styled], banded)
@@ -216,6 +235,14 @@ def _draw_curves(
 
 def _key(row: Result, names: Sequence[str]) -> tuple[Any, ...]:
     return tuple(getattr(row, name) for name in names)
+
+
+def _points(axes: Axes, rows: Sequence[Result], x: str, y: str, colours: Sequence[Any]) -> None:
+    """A point for each row."""
+    drawn = [(row, colour) for row, colour in zip(rows, colours, strict=True) if getattr(row, y) is not None]
+    along = [getattr(row, x) * ABOUT[x].factor for row, _ in drawn]
+    up = [getattr(row, y) * COLUMNS[y].factor for row, _ in drawn]
+    axes.scatter(along, up, s=5, c=[colour for _, colour in drawn], linewidths=0)
 
 
 def _curve(axes: Axes, rows: Sequence[Result], x: str, y: str, look: dict[str, Any], marker: str) -> bool:

@@ -31,7 +31,7 @@ PAGE = Path(__file__).with_name("report.html")
 NAME = "report.html"
 
 #: carriers that can be turned, and grains of all of them: 9 bytes each, a third more in base64
-MOST_CARRIERS, MOST_GRAINS = 8, 150_000
+MOST_CARRIERS, MOST_GRAINS = 8, 100_000
 
 #: a larger table would make a file that is too large to mail
 MOST_ROWS = 3000
@@ -75,7 +75,7 @@ def _page(folder: Path, results: list[Result]) -> str:
         "TITLE": html.escape(_title(results)),
         "QUESTION": _paragraphs(_question(results, varied)),
         "ASSUMPTIONS": _list(_assumptions(results, varied)),
-        "FIGURES": "\n".join(_figures(results)) or "<p>One speed alone makes no curve.</p>",
+        "FIGURES": "\n".join(_figures(folder, results)) or "<p>One speed alone makes no curve.</p>",
         "WARNINGS": _list(_warnings(results)) or "<p>None.</p>",
         "PROVENANCE": _list(_provenance(folder, results)),
         "SWEEP": html.escape(sweep_file(results)),
@@ -83,13 +83,20 @@ def _page(folder: Path, results: list[Result]) -> str:
             {
                 "columns": [{"name": key, "unit": COLUMNS[key].unit, "help": COLUMNS[key].help} for key in KEYS],
                 "shown": [*varied, *SHOWN],
-                "rows": [[getattr(row, key) for key in KEYS] for row in results],
+                "count": len(results),
+                "values": [_values(results, key) for key in KEYS],
                 "carriers": carriers,
             }
         ),
     }
     text = read_text(PAGE)
     return re.sub(r"@@([A-Z]+)@@", lambda match: parts[match[1]], text)
+
+
+def _values(results: list[Result], key: str) -> list[Any]:
+    """A column's values; one alone if they are all the same."""
+    values = [getattr(row, key) for row in results]
+    return values[:1] if all(value == values[0] for value in values) else values
 
 
 def _json(data: object) -> str:
@@ -125,8 +132,10 @@ def _span(results: list[Result], name: str) -> str:
     unit = unit or about.unit
     shown = [f"{value * factor:.4g}" if isinstance(value, float) else str(value) for value in values]
     gap = "" if unit == "°" else " "
-    words = ", ".join(shown) if len(shown) <= 6 else f"{shown[0]} to {shown[-1]} ({len(shown)} values)"
-    return f"{words}{gap + unit if unit else ''}"
+    words, number = ", ".join(shown), ""
+    if len(shown) > 6:
+        words, number = f"{shown[0]} to {shown[-1]}", f" ({len(shown)} values)"
+    return f"{words}{gap + unit if unit else ''}{number}"
 
 
 def _question(results: list[Result], varied: Sequence[str]) -> list[str]:
@@ -143,8 +152,8 @@ def _question(results: list[Result], varied: Sequence[str]) -> list[str]:
     if len(results) > 1:
         said.append(
             f"The dispersion ratio, detached over initial dust mass, is {low.dispersion_ratio:.3f} at the least "
-            f"({low.speed:g} m/s, {low.angle:g} degrees) and {high.dispersion_ratio:.3f} at the most "
-            f"({high.speed:g} m/s, {high.angle:g} degrees)."
+            f"({low.speed:.4g} m/s, {low.angle:.4g} degrees) and {high.dispersion_ratio:.3f} at the most "
+            f"({high.speed:.4g} m/s, {high.angle:.4g} degrees)."
         )
     else:
         said.append(f"The dispersion ratio, detached over initial dust mass, is {first.dispersion_ratio:.3f}.")
@@ -284,13 +293,18 @@ def sweep_file(results: Iterable[Parameters]) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def _figures(results: list[Result]) -> list[str]:
+def _figures(folder: Path, results: list[Result]) -> list[str]:
     """The plots of the folder as SVG elements."""
     from .figures import draw_all
 
     with scratch_folder(1 << 24) as scratch:
-        paths = [path for path in draw_all(results, scratch) if path.suffix == ".svg"]
-        return [f"<figure>{path.read_text()[path.read_text().index('<svg') :]}</figure>" for path in paths]
+        try:
+            paths = draw_all(folder / TABLE, results, scratch)
+        except InvalidInput:
+            # one speed alone
+            return []
+        texts = [path.read_text() for path in paths if path.suffix == ".svg"]
+        return [f"<figure>{text[text.index('<svg') :]}</figure>" for text in texts]
 
 
 def _carriers(results: list[Result]) -> list[dict[str, Any]]:
@@ -326,7 +340,7 @@ def _carrier(row: Result) -> dict[str, Any]:
         times = _times(folder / "events", len(texture.diameters), impact.timestep)
     note = "" if row.method == "functions" else " (resolved; shown: the functions of the same impact)"
     return {
-        "label": f"{row.speed:g} m/s, {row.angle:g} degrees, restitution {row.restitution:g}: ratio "
+        "label": f"{row.speed:.4g} m/s, {row.angle:.4g} degrees, restitution {row.restitution:.4g}: ratio "
         f"{result.dispersion_ratio:.3f}{note}",
         "angle": row.angle,
         "contact": result.contact_time * 1e6,
