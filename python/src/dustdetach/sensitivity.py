@@ -20,7 +20,7 @@ from .files import as_path
 from .impact import Impact
 from .parameters import PARAMETERS
 from .ranges import Sampling, checked, is_distribution, take_sampling, values_at
-from .runner import run
+from .runner import Bench
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,12 @@ def _indices(
     shares = np.concatenate([a, b, *replaced])
     columns = [values_at(column, *kind) for column, kind in zip(shares.T, kinds.values(), strict=True)]
     ratios = np.empty(len(shares))
-    for index, values in enumerate(zip(*columns, strict=True)):
-        sample = dict(zip(kinds, map(float, values), strict=True))
-        ratios[index] = run(Impact.from_mapping({**fixed, **sample})).dispersion_ratio
-        if watch is not None:
-            watch(index + 1, len(shares))
+    with Bench() as bench:
+        for index, values in enumerate(zip(*columns, strict=True)):
+            sample = dict(zip(kinds, map(float, values), strict=True))
+            ratios[index] = bench.run(Impact.from_mapping({**fixed, **sample})).dispersion_ratio
+            if watch is not None:
+                watch(index + 1, len(shares))
     known = ratios[: 2 * number]
     variance = float(known.var())
     if variance == 0:
