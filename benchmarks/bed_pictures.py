@@ -5,9 +5,7 @@ folder, unless done, and draws.
 """
 
 import argparse
-import os
 import re
-import subprocess
 from io import BytesIO
 from pathlib import Path
 
@@ -15,25 +13,23 @@ import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np
+from deck import ROOT, run
 from matplotlib import pyplot as plt
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import LogNorm
 from PIL import Image
 
-ROOT = Path(__file__).resolve().parents[1]
-LMP = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build")) / "bin/lmp-dust"
 GRAINS = 4500
-EXTRA = {"drum": ["-var", "turns", "0.5"], "drop": ["-var", "field", "field"], "sieve": [], "pour": [], "chute": []}
+EXTRA = {"drum": {"turns": 0.5}, "drop": {"field": "field"}, "sieve": {}, "pour": {}, "chute": {}}
 WALL = {"color": "0.35", "linewidth": 1.2}
 
 
-def run(deck: str, folder: Path) -> None:
+def run_bed(deck: str, folder: Path) -> None:
     """Write the deck's dump and log (and the drop's source field) into a folder; nothing if they are there."""
     if (folder / "log").is_file():
         return
     folder.mkdir(parents=True, exist_ok=True)
-    words = [LMP, "-in", ROOT / f"lammps-inputs/in.{deck}", "-var", "dump", "dump", "-log", "part", *EXTRA[deck]]
-    subprocess.run(words, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    run(f"in.{deck}", folder, log="part", dump="dump", **EXTRA[deck])
     (folder / "part").rename(folder / "log")
 
 
@@ -204,7 +200,7 @@ def main() -> None:
     parser.add_argument("decks", nargs="*", default=["drum", "drop", "sieve", "pour", "chute"])
     args = parser.parse_args()
     for deck in args.decks:
-        run(deck, args.work / deck)
+        run_bed(deck, args.work / deck)
         {"drum": drum, "drop": drop, "sieve": sieve, "pour": pour, "chute": chute}[deck](args.work / deck)
 
 

@@ -10,22 +10,16 @@ bodies/comparison.md and bodies/agreement.csv, which doc/validation.rst shows.
 
 import argparse
 import json
-import os
 import re
-import subprocess
-import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 
+from deck import BUILD, ROOT, run, table
 from machine import description
 from rows import read, write
 
-ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "benchmarks/bodies"
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
-INPUTS = ROOT / "lammps-inputs"
 RESOLVED, FUNCTIONS = HERE / "resolved.csv", HERE / "functions.csv"
 METHODS = ("impulse", "estimate", "integrate")
 LIMIT = 0.03  # largest difference
@@ -89,24 +83,18 @@ def cases() -> list[tuple[str, ...]]:
 
 def run_deck(deck: str, variables: dict[str, str], case: tuple[str, ...]) -> list[dict[str, str]]:
     """A row for each carrier, from what the deck prints at its end."""
-    command = [str(BUILD / "bin/lmp"), "-in", str(INPUTS / deck), "-log", "none"]
-    for name, value in {"plugin": str(BUILD / "plugin/dustplugin.so"), **variables}.items():
-        command += ["-var", name, value]
     started = time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
-    if done.returncode:
-        raise RuntimeError(f"{' '.join(command)} failed:\n{done.stdout[-2000:]}")
+    printed = run(deck, **variables)
     shared = {
         **dict(zip(CASE, case, strict=True)),
-        "grains": (re.findall(r"^Created (\d+) grains", done.stdout, re.MULTILINE) or [""])[0],
-        "grains_off": (re.findall(r"^grains off: (\d+)", done.stdout, re.MULTILINE) or [""])[0],
-        "last_neck": (re.findall(r"last neck (\d+)", done.stdout) or [""])[0],
+        "grains": (re.findall(r"^Created (\d+) grains", printed, re.MULTILINE) or [""])[0],
+        "grains_off": (re.findall(r"^grains off: (\d+)", printed, re.MULTILINE) or [""])[0],
+        "last_neck": (re.findall(r"last neck (\d+)", printed) or [""])[0],
         "wall_seconds": f"{time.perf_counter() - started:.1f}",
     }
-    ends = re.findall(r"^carrier.*: (\S+) \S+ (\S+) m/s, spin (\S+) rad/s$", done.stdout, re.MULTILINE)
+    ends = re.findall(r"^carrier.*: (\S+) \S+ (\S+) m/s, spin (\S+) rad/s$", printed, re.MULTILINE)
     # of many sizes the functions have the ratio by mass, their halves by number alone
-    ratios = re.findall(r"dispersion ratio ([\d.]+)(?:: south (\S+), north (\S+))?", done.stdout)
+    ratios = re.findall(r"dispersion ratio ([\d.]+)(?:: south (\S+), north (\S+))?", printed)
     return [
         {
             **shared,
@@ -127,7 +115,7 @@ def key(row: dict[str, str]) -> tuple[str, ...]:
     return tuple(row[name] for name in CASE)
 
 
-def run() -> None:
+def run_all() -> None:
     HERE.mkdir(exist_ok=True)
     order = cases()
     rows = [row for row in read(RESOLVED) if key(row) in order]
@@ -181,14 +169,6 @@ TITLES = {
 }
 
 
-def table(head: list[str], rows: list[list[str]]) -> Iterator[str]:
-    yield "| " + " | ".join(name.replace("_", " ") for name in head) + " |"
-    yield "|" + "---|" * len(head)
-    for row in rows:
-        yield "| " + " | ".join(row) + " |"
-    yield ""
-
-
 def comparison(resolved: list[dict[str, str]], computed: list[dict[str, str]]) -> Iterator[str]:
     by_method = {(row["tangential"], key(row), row["carrier"]): row for row in computed}
     yield "# Spin, two carriers, many sizes: functions against resolved runs"
@@ -218,7 +198,7 @@ def comparison(resolved: list[dict[str, str]], computed: list[dict[str, str]]) -
             rows.append(cells)
         head = [*columns, *(f"{name}: {who}" for name in more for who in ("resolved", *tellers))]
         head += ["ratio: resolved", *METHODS, *(f"difference: {method}" for method in METHODS)]
-        yield from table(head, rows)
+        yield from table((name.replace("_", " ") for name in head), rows)
         if kind == "collision":
             ratios = [float(row["dispersion_ratio"]) for row in found]
             apart = max(abs(first - second) for first, second in zip(ratios[::2], ratios[1::2], strict=True))
@@ -251,7 +231,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("run", "compare"))
     if parser.parse_args().what == "run":
-        run()
+        run_all()
         return
     text = "\n".join(comparison(read(RESOLVED), functions()))
     (HERE / "comparison.md").write_text(text)

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from dustdetach import Impact, run
 from dustdetach.frames import Frame, frame_sizes, read_frames
-from dustdetach.pictures import read_fates
+from dustdetach.shares import read_fates
 from numpy.typing import NDArray
 from rows import write
 from scipy.spatial import cKDTree

@@ -4,8 +4,6 @@ spreads of adhesion, and draws the share of dust that each acceleration takes of
     . build/environment; build/venv/bin/python benchmarks/held_pictures.py
 """
 
-import os
-import subprocess
 import tempfile
 from pathlib import Path
 
@@ -13,10 +11,9 @@ import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np
+from deck import ROOT, run
 from matplotlib import pyplot as plt
 
-ROOT = Path(__file__).resolve().parents[1]
-LMP = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build")) / "bin/lmp-dust"
 SPREADS = {"1": "0.2", "1.5": "#7b3294", "2": "#c2610c", "4": "#2a7f62"}
 HOLD = 1.32997e5  # pull-off force by mass of the grains, m/s2
 
@@ -24,8 +21,7 @@ HOLD = 1.32997e5  # pull-off force by mass of the grains, m/s2
 def table(deck: str, spread: str) -> np.ndarray:
     """Rows of a deck's table: spin or amplitude, acceleration, share."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [LMP, "-in", ROOT / "lammps-inputs" / deck, "-var", "spread", spread, "-var", "out", "table"]
-        subprocess.run([*command, "-log", "none"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        run(deck, Path(folder), spread=spread, out="table")
         return np.loadtxt(Path(folder) / "table")
 
 

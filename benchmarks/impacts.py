@@ -26,9 +26,10 @@ from pathlib import Path
 
 import dustdetach
 import matplotlib.pyplot as plt
+from deck import table
 from dustdetach import Impact, read_cases, sweep
 from dustdetach.figures import draw
-from dustdetach.impact import PARAMETERS, RINGING
+from dustdetach.parameters import PARAMETERS, RINGING
 from dustdetach.result import Result, read_csv, write_csv
 from machine import processor
 
@@ -74,8 +75,13 @@ def run(names: list[str], work: Path, jobs: int, functions: bool) -> None:
 
 
 def of_law(case: Impact, law: str) -> Impact:
-    """By the functions with a law, some of which know nothing of a grain's damping."""
-    return replace(case, tangential=law, grain_damping=case.grain_damping if law in RINGING else Impact.grain_damping)
+    """By the functions with a law, some of which know nothing of a grain's damping, in the resolved run's steps."""
+    return replace(
+        case,
+        tangential=law,
+        grain_damping=case.grain_damping if law in RINGING else Impact.grain_damping,
+        timestep=float(replace(case, method="resolved").timestep),
+    )
 
 
 def decks(folder: Path) -> Path:
@@ -128,15 +134,6 @@ def unique(rows: Iterable[Result]) -> list[Result]:
 
 
 # --- the text --------------------------------------------------------------------------------------------
-def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[str]:
-    head = list(head)
-    yield "| " + " | ".join(head) + " |"
-    yield "|" + "---|" * len(head)
-    for row in rows:
-        yield ("| " + " | ".join(f"{cell:.4f}" if isinstance(cell, float) else str(cell) for cell in row) + " |")
-    yield ""
-
-
 def agreement(label: str, compared: list[Pair]) -> list[object]:
     """Mean and largest difference, whole, south, north; the case of the largest."""
     row: list[object] = [label, len(compared)]

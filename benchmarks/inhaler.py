@@ -6,17 +6,12 @@ Runs lammps-inputs/in.impact.inhaler and writes inhaler/criteria.csv, what each 
 inhaler/angles.csv, the angles of largest release and what spin changes, which doc/validation.rst shows.
 """
 
-import os
 import re
-import subprocess
-import tempfile
-from pathlib import Path
 
+from deck import ROOT, run
 from rows import write
 
-ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "benchmarks/inhaler"
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
 SPEEDS = (1, 2, 4, 7, 9, 12, 16, 20)
 ANGLES = (90, 75, 60, 45, 30, 15)
 FRICTIONS = (0.05, 0.3, 0.6)
@@ -25,11 +20,7 @@ SPIN = 1e5  # rad/s
 
 def shares(**variables: object) -> dict[str, float]:
     """Fractions of the grains that the deck prints, by name."""
-    command = [str(BUILD / "bin/lmp"), "-in", str(ROOT / "lammps-inputs/in.impact.inhaler"), "-log", "none"]
-    for name, value in {"plugin": BUILD / "plugin/dustplugin.so", **variables}.items():
-        command += ["-var", name, str(value)]
-    with tempfile.TemporaryDirectory() as folder:
-        printed = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=True).stdout
+    printed = run("in.impact.inhaler", **variables)
     found = {}
     for line in re.findall(r"^(?:detached|met): .*|^dispersion .*", printed, re.MULTILINE):
         kind = "met " if line.startswith("met") else ""

@@ -58,7 +58,7 @@ def stock(text: str) -> str:
     """The same grains with LAMMPS' own contact."""
     gamma = "$(v_{}/(18*PI*v_z0^2))"
     ours = {
-        "${hamaker} ${z0} ${slide}": gamma.format("hamaker"),
+        "${hamaker_wall} ${z0} ${slide}": gamma.format("hamaker_wall"),
         "$(v_hamaker1) ${z0} ${slide}": gamma.format("hamaker1"),
         "${hamaker_grains} ${z0} ${slide}": gamma.format("hamaker_grains"),
     }

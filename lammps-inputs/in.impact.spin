@@ -17,6 +17,14 @@ variable coverage         index 0.2       # grain cross-sections / carrier surfa
 variable seed             index 1
 variable carrier_diameter index 1.5e-3    # m
 variable grain_diameter   index 20e-6     # m
+variable carrier_density  index 7700      # kg/m3
+variable carrier_modulus  index 210e9     # Young's modulus of carrier and wall, Pa, and their Poisson's ratios
+variable carrier_poisson  index 0.3
+variable wall_modulus     index 210e9
+variable wall_poisson     index 0.3
+variable grain_density    index 2700      # kg/m3
+variable grain_modulus    index 75e9      # Pa
+variable grain_poisson    index 0.3
 variable hamaker          index 14.633e-20    # grain against carrier, J
 variable z0               index 0.4e-9    # m
 variable friction         index 0.3       # grain against carrier
@@ -46,27 +54,40 @@ variable start  equal v_radius-5*v_vz*v_timestep    # five steps before contact
 region          box block -$(4*v_radius) $(8*v_radius) -$(2*v_radius) $(2*v_radius) -$(v_radius) $(6*v_radius)
 create_box      1 box
 create_atoms    1 single 0.0 0.0 ${start}
-set             group all diameter ${carrier_diameter} density 7700
+set             group all diameter ${carrier_diameter} density ${carrier_density}
 velocity        all set ${vx} 0.0 ${vz}
 set             group all omega 0.0 ${spin} 0.0
+
+# one material with the E* and G* of carrier and wall: 2 G*/E* = (1 - nu)/(2 - nu); two alike are their own
+variable same   equal v_carrier_modulus==v_wall_modulus&&v_carrier_poisson==v_wall_poisson
+variable Ew     equal 1/((1-v_carrier_poisson^2)/v_carrier_modulus+(1-v_wall_poisson^2)/v_wall_modulus)
+variable shear1 equal 2*(2-v_carrier_poisson)*(1+v_carrier_poisson)/v_carrier_modulus
+variable shear2 equal 2*(2-v_wall_poisson)*(1+v_wall_poisson)/v_wall_modulus
+variable Gw     equal 1/(v_shear1+v_shear2)
+variable pair_poisson equal ternary(v_same,v_carrier_poisson,(1-4*v_Gw/v_Ew)/(1-2*v_Gw/v_Ew))
+variable pair_modulus equal ternary(v_same,v_carrier_modulus,2*(1-v_pair_poisson^2)*v_Ew)
 
 timestep        ${timestep}
 neighbor        $(0.2*v_radius) bin
 pair_style      granular
-pair_coeff      * * hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 ${wall_friction} &
-                damping coeff_restitution/limited
+pair_coeff      * * hertz/material ${carrier_modulus} ${restitution} ${carrier_poisson} &
+                tangential mindlin NULL 0.0 ${wall_friction} damping coeff_restitution/limited
 
 fix             move all nve/sphere
-fix             wall all wall/gran granular hertz/material 210e9 ${restitution} 0.3 tangential mindlin NULL 0.0 &
-                ${wall_friction} damping coeff_restitution/limited zplane 0.0 NULL
+fix             wall all wall/gran granular hertz/material $(v_pair_modulus:%.17g) ${restitution} &
+                $(v_pair_poisson:%.17g) tangential mindlin NULL 0.0 ${wall_friction} &
+                damping coeff_restitution/limited zplane 0.0 NULL
 
 # half-angle without grains where the carrier hits (rad): -var bare, or as wide as the grains need it, 0.33 for these
 variable        cap string ""
 if "$(is_defined(variable,bare))" then "variable cap string 'bare ${bare}'"
+variable        adhesion string "hamaker ${hamaker} ${z0}"
+if "$(is_defined(variable,surface_energy))" then "variable adhesion string 'surface ${surface_energy}'"
 variable        ringing string ""
 if "$(is_defined(variable,grain_damping))" then "variable ringing string 'damping ${grain_damping}'"
 fix             dust all dust/detach texture monolayer ${grain_diameter} coverage ${coverage} seed ${seed} &
-                ${cap} density 2700 hamaker ${hamaker} ${z0} elastic 75e9 0.3 210e9 0.3 friction ${friction} &
+                ${cap} density ${grain_density} ${adhesion} &
+                elastic ${grain_modulus} ${grain_poisson} ${carrier_modulus} ${carrier_poisson} friction ${friction} &
                 tangential ${tangential} rotation ${rotation} every 100 ${ringing}
 
 # one line a grain: step, carrier, grain, mode (1 normal, 2 tangential), diameter, position, velocity

@@ -41,7 +41,6 @@ void CarrierData::grow(int nmax)
   memory->grow(state, nmax, "dust/detach:state");
   memory->grow(coat, nmax, "dust/detach:coat");
   memory->grow(radius, nmax, "dust/detach:radius");
-  attached.resize(nmax);
   memory->grow(window_mass, nmax, "dust/detach:window_mass");
   memory->grow(began, nmax, "dust/detach:began");
   memory->grow(columns, nmax, DetachAtom::SIZE, "dust/detach:array_atom");
@@ -51,11 +50,18 @@ void CarrierData::grow(int nmax)
   if (meet_used) together.resize(nmax);
 }
 
+// LAMMPS' arrays have room for 16384 atoms at least, of which a run of one carrier should not pay for the others
+void CarrierData::make_room_for(int i)
+{
+  if (attached.size() <= static_cast<size_t>(i)) attached.resize(i + 1);
+}
+
 void CarrierData::copy(int i, int j)
 {
   state[j] = state[i];
   coat[j] = coat[i];
   radius[j] = radius[i];
+  make_room_for(std::max(i, j));
   attached[j] = attached[i];
   window_mass[j] = window_mass[i];
   began[j] = began[i];
@@ -71,6 +77,7 @@ void CarrierData::clear(int i)
   state[i] = NO_CARRIER;
   coat[i] = 0;
   radius[i] = 0.0;
+  make_room_for(i);
   attached[i] = std::vector<uint64_t>();
   window_mass[i] = began[i] = 0.0;
   if (angle) std::fill_n(angle[i], 3, 0.0);

@@ -27,7 +27,7 @@ class CarrierData : protected Pointers {
   int *state;
   int *coat;                                      // number of its texture
   double *radius;                                 // when it became a carrier; 0 for other atoms
-  std::vector<std::vector<uint64_t>> attached;    // of carriers, a bit a grain of the texture
+  std::vector<std::vector<uint64_t>> attached;    // of carriers, a bit a grain of the texture; of atoms so far
   Dust::Quaternion *orientation;    // if it is not the same for all for ever: TURN_EVERY steps ago at most, with
   double **angle;                   // rotation: about which the carrier has turned since
   double *window_mass;              // lost in the window that is not complete yet
@@ -70,6 +70,7 @@ class CarrierData : protected Pointers {
  private:
   bool angle_used, orientation_used, meet_used;
   int motion_size;
+  void make_room_for(int);
 };
 
 }    // namespace LAMMPS_NS

@@ -89,7 +89,7 @@ void ComputeDustGrain::add_grains(const FixDustDetach *dust, int i)
   for (int word = 0; word < table.words(); word++)
     Dust::each_bit(carriers.attached[i][word], [&](int k) {
       const Dust::GrainTable::Site &site = table.site(word * Dust::PATCH + k);
-      const double grain_radius = coat.texture.grains[site.grain].radius, shell = radius + grain_radius;
+      const double grain_radius = coat.texture->grains[site.grain].radius, shell = radius + grain_radius;
       double n[3];
       standing.to_space(site.n, n);
       rows.push_back({double(atom->tag[i]), site.grain + 1.0, 2.0 * grain_radius, centre[0] + shell * n[0],

@@ -59,8 +59,8 @@ void CreateDust::place(const std::vector<Carrier> &carriers, const DustOptions &
   std::sort(radii.begin(), radii.end(), std::greater<>());
   for (const double radius : radii) {
     if (!sizes.empty() && DustOptions::same_size(radius, sizes.back().radius)) continue;
-    const Dust::Texture texture = options.texture(radius);
-    sizes.push_back({radius, texture, sites_of(texture, options)});
+    const auto texture = options.texture(radius);
+    sizes.push_back({radius, *texture, sites_of(*texture, options)});
   }
 }
 

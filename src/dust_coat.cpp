@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <mutex>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -68,7 +69,7 @@ void DustCoats::place(const std::vector<double> &radii)
   for (const auto &[key, largest] : missing) {
     add(make(key, radius_of(key, largest)));
     const DustCoat &coat = coats.back();
-    settings.save(coat.texture, coats.size() == 1);
+    settings.save(*coat.texture, coats.size() == 1);
     if (comm->me == 0)
       utils::logmesg(lmp,
                      "Fix dust/detach {}: {} grains a carrier of diameter {:.5g}, mean mass {:.5g}, pull-off "
@@ -78,14 +79,51 @@ void DustCoats::place(const std::vector<double> &radii)
   }
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   the last table is kept with its texture: most runs in a process need the same again
+------------------------------------------------------------------------- */
 
-DustCoat DustCoats::make(double key, double radius) const
+namespace {
+
+struct Table {
+  std::shared_ptr<const Dust::Texture> texture;
+  std::shared_ptr<const Dust::GrainTable> table;
+  double checksum;
+};
+
+double checksum_of(const Dust::Texture &texture)
 {
-  DustCoat coat;
-  coat.key = key;
-  coat.texture = settings.texture(radius);
-  coat.radius = coat.texture.carrier_radius;
+  double sum = 0.0;
+  int i = 0;
+  for (const Dust::Grain &g : texture.grains)
+    sum +=
+        std::cos(++i) * (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / texture.carrier_radius + (g.adhesion - 1.0));
+  return sum;
+}
+
+Table last_table;
+std::mutex last_table_guard;    // LAMMPS instances may run in several threads
+
+Table table_of(const std::shared_ptr<const Dust::Texture> &texture, const Dust::Material &material,
+               const Dust::Criteria &criteria)
+{
+  {
+    const std::lock_guard<std::mutex> lock(last_table_guard);
+    if (last_table.texture == texture && last_table.table->material() == material &&
+        last_table.table->criteria() == criteria)
+      return last_table;
+  }
+  const auto table = std::make_shared<const Dust::GrainTable>(*texture, material, criteria);
+  const Table made = {texture, table, checksum_of(*texture)};
+  if (DustOptions::may_keep(*texture)) {
+    const std::lock_guard<std::mutex> lock(last_table_guard);
+    last_table = made;
+  }
+  return made;
+}
+
+Dust::Material material_of(const DetachSettings &settings)
+{
   Dust::Material material = {settings.density,  settings.surface_energy, settings.modulus(),
                              settings.friction, settings.rolling,        settings.damping};
   if (settings.criteria.meet) {
@@ -95,13 +133,21 @@ DustCoat DustCoats::make(double key, double radius) const
     material.softening = settings.meet_softening;
     material.step = settings.meet_step;
   }
-  coat.table = std::make_unique<Dust::GrainTable>(coat.texture, material, settings.criteria);
+  return material;
+}
+
+}    // namespace
+
+DustCoat DustCoats::make(double key, double radius) const
+{
+  DustCoat coat;
+  coat.key = key;
+  coat.texture = settings.texture(radius);
+  coat.radius = coat.texture->carrier_radius;
+  const Table made = table_of(coat.texture, material_of(settings), settings.criteria);
+  coat.table = made.table;
+  coat.checksum = made.checksum;
   coat.mass = empty() ? 1.0 : coat.table->mean_mass() / unit_mass();
-  coat.checksum = 0.0;
-  int i = 0;
-  for (const Dust::Grain &g : coat.texture.grains)
-    coat.checksum +=
-        std::cos(++i) * (g.n[0] + 2.0 * g.n[1] + 3.0 * g.n[2] + g.radius / coat.radius + (g.adhesion - 1.0));
   return coat;
 }
 

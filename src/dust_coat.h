@@ -21,8 +21,8 @@ namespace LAMMPS_NS {
 struct DustCoat {
   double key;       // of the class
   double radius;    // of the carrier that it was placed on
-  Dust::Texture texture;
-  std::unique_ptr<Dust::GrainTable> table;
+  std::shared_ptr<const Dust::Texture> texture;
+  std::shared_ptr<const Dust::GrainTable> table;
   double mass;        // mean of its grains, in that of the first class: exactly 1 for equal grains
   double checksum;    // tells this texture from another one in a restart file
 

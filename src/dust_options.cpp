@@ -20,7 +20,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <new>
+#include <utility>
 
 using namespace LAMMPS_NS;
 
@@ -229,10 +231,10 @@ void DustOptions::read_file(const std::string &name)
   on_one_rank("texture file " + name, [&]() { read = Dust::read_texture_file(name); });
   share(read);
   for (const File &other : files)
-    if (same_size(other.texture.carrier_radius, read.carrier_radius))
+    if (same_size(other.texture->carrier_radius, read.carrier_radius))
       error->all(FLERR, "{} texture files {} and {} are both for carriers of diameter {}", command, other.name, name,
                  2.0 * read.carrier_radius);
-  files.push_back({name, read});
+  files.push_back({name, std::make_shared<const Dust::Texture>(std::move(read))});
 }
 
 /* ----------------------------------------------------------------------
@@ -307,10 +309,10 @@ double DustOptions::carrier_radius(int i) const
 
 int DustOptions::file_for(double radius) const
 {
-  const auto distance = [=](const File &file) { return std::fabs(std::log(file.texture.carrier_radius / radius)); };
+  const auto distance = [=](const File &file) { return std::fabs(std::log(file.texture->carrier_radius / radius)); };
   const auto nearest = std::min_element(files.begin(), files.end(),
                                         [&](const File &a, const File &b) { return distance(a) < distance(b); });
-  const double size = nearest->texture.carrier_radius;
+  const double size = nearest->texture->carrier_radius;
   if (!same_size(size, radius) && distance(*nearest) > std::log1p(class_width))
     error->one(FLERR, "{} texture file {} is for carriers of diameter {}, not {}", command, nearest->name, 2.0 * size,
                2.0 * radius);
@@ -333,22 +335,65 @@ Dust::BareCap DustOptions::bare_cap(double radius) const
 
 /* ---------------------------------------------------------------------- */
 
-Dust::Texture DustOptions::texture(double radius) const
+std::shared_ptr<const Dust::Texture> DustOptions::texture(double radius) const
 {
+  const auto texture = from_file() ? files[file_for(radius)].texture : monolayer(radius);
+  check_plausible(*texture);
+  return texture;
+}
+
+/* ----------------------------------------------------------------------
+   programs run one impact after another in a process, most of them with the texture of the last one, which takes longer
+   to make than the impact
+------------------------------------------------------------------------- */
+
+namespace {
+
+struct LastMonolayer {
+  std::vector<double> source;    // all that it depends on
+  std::shared_ptr<const Dust::Texture> texture;
+};
+LastMonolayer last_monolayer;
+std::mutex last_monolayer_guard;    // LAMMPS instances may run in several threads
+
+std::shared_ptr<const Dust::Texture> kept_monolayer(const std::vector<double> &source)
+{
+  const std::lock_guard<std::mutex> lock(last_monolayer_guard);
+  return last_monolayer.source == source ? last_monolayer.texture : nullptr;
+}
+
+void keep_monolayer(LastMonolayer made)
+{
+  if (!DustOptions::may_keep(*made.texture)) made = {};
+  const std::lock_guard<std::mutex> lock(last_monolayer_guard);
+  last_monolayer = std::move(made);
+}
+
+}    // namespace
+
+std::shared_ptr<const Dust::Texture> DustOptions::monolayer(double radius) const
+{
+  const Dust::BareCap cap = bare_cap(radius);
+  const double *axis = cap.axis;
+  const std::vector<double> source = {radius,    double(distributed), diameter, double(sizes.kind),
+                                      sizes.x50, sizes.spread,        coverage, double(seed),
+                                      spread,    cap.half_angle,      axis[0],  axis[1],
+                                      axis[2]};
+  auto texture = kept_monolayer(source);
+  int kept = texture != nullptr;    // other ranks may have run other instances
+  MPI_Allreduce(MPI_IN_PLACE, &kept, 1, MPI_INT, MPI_MIN, world);
+  if (kept) return texture;
+
   Dust::Texture made;
-  if (from_file()) {
-    made = files[file_for(radius)].texture;
-  } else {
-    const Dust::BareCap cap = bare_cap(radius);
-    on_one_rank("texture", [&]() {
-      made = distributed ? Dust::place_monolayer(radius, sizes, coverage, cap, seed)
-                         : Dust::place_monolayer(radius, 0.5 * diameter, coverage, cap, seed);
-      Dust::spread_adhesion(made, spread, seed);
-    });
-    share(made);
-  }
-  check_plausible(made);
-  return made;
+  on_one_rank("texture", [&]() {
+    made = distributed ? Dust::place_monolayer(radius, sizes, coverage, cap, seed)
+                       : Dust::place_monolayer(radius, 0.5 * diameter, coverage, cap, seed);
+    Dust::spread_adhesion(made, spread, seed);
+  });
+  share(made);
+  texture = std::make_shared<const Dust::Texture>(std::move(made));
+  keep_monolayer({source, texture});
+  return texture;
 }
 
 /* ----------------------------------------------------------------------

@@ -11,6 +11,7 @@
 #include "core/texture_placement.h"
 #include "keywords.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,9 @@ class DustOptions : protected Pointers {
   // whether textures come from files; then which of them, from 0, is for carriers of a radius
   bool from_file() const { return !files.empty(); }
   int file_for(double carrier_radius) const;
-  // all ranks: the texture for carriers of a radius
-  Dust::Texture texture(double carrier_radius) const;
+  // all ranks: the texture for carriers of a radius. The last monolayer that was placed in this process is kept
+  std::shared_ptr<const Dust::Texture> texture(double carrier_radius) const;
+  static bool may_keep(const Dust::Texture &texture) { return texture.grains.size() <= MOST_KEPT; }
   // writes it to a file if that is asked for: the first of them, or each one
   void save(const Dust::Texture &, bool first) const;
 
@@ -55,10 +57,11 @@ class DustOptions : protected Pointers {
   bool reference_units() const;    // in which the reference case is known, so that there are defaults
 
  private:
+  static constexpr size_t MOST_KEPT = 100000;    // grains, 5 MB
   std::string write;
   struct File {
     std::string name;
-    Dust::Texture texture;
+    std::shared_ptr<const Dust::Texture> texture;
   };
   std::vector<File> files;
   double diameter, coverage;
@@ -79,6 +82,7 @@ class DustOptions : protected Pointers {
   template <typename Action> void on_one_rank(const std::string &what, Action) const;
   void share(Dust::Texture &) const;
   Dust::BareCap bare_cap(double carrier_radius) const;
+  std::shared_ptr<const Dust::Texture> monolayer(double carrier_radius) const;
   void read_file(const std::string &);
   void check_plausible(const Dust::Texture &) const;
 };

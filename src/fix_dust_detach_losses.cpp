@@ -70,7 +70,7 @@ DustShedding::Grain FixDustDetach::as_it_left(int i, const Carried &carrier, con
 {
   const DustCoat &coat = coats[carriers.coat[i]];
   const int number = coat.table->grain(d.bit);
-  const double radius = coat.texture.grains[number].radius, distance = carriers.radius[i] + radius + height;
+  const double radius = coat.texture->grains[number].radius, distance = carriers.radius[i] + radius + height;
   const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
   DustShedding::Grain left = {number + 1.0, mass, radius, shedding.now() - before, {}, {}, {}};
   for (int k = 0; k < 3; k++) {

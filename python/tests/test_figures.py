@@ -6,7 +6,7 @@ import pytest
 from matplotlib import pyplot as plt
 
 from dustdetach import InvalidInput, MachineFault, read_csv
-from dustdetach.figures import COLOURS, draw, plot
+from dustdetach.figures import COLOURS, _curves, draw, plot
 from dustdetach.result import write_csv
 
 
@@ -30,16 +30,15 @@ def test_a_sweep_of_angles_alone_makes_one_figure(figures_folder, tmp_path):
 
 def test_the_picture_says_what_it_shows(figures_folder, tmp_path):
     rows = [row for row in table(figures_folder) if row.angle == 90]
-    resolved = [replace(row, method="resolved", normal=None, tangential_mode=None) for row in rows[:5]]
     with plt.rc_context({"svg.fonttype": "none"}):
-        draw([*rows, *resolved], tmp_path / "both")
+        draw([*rows, *map(resolved, rows[:5])], tmp_path / "both")
     text = (tmp_path / "both.svg").read_text()
     for words in ("Impact speed", "(m/s)", "Dispersion ratio", "North", "South", "dust-resolved", "0.5"):
         assert words in text
 
 
 def resolved(row, **changes):
-    return replace(row, method="resolved", normal=None, tangential_mode=None, **changes)
+    return replace(row, method="resolved", normal=None, tangential_mode=None, timestep=1e-9, **changes)
 
 
 @pytest.mark.filterwarnings("error")
@@ -158,3 +157,12 @@ def test_broken_tables_are_named(tmp_path, figures_folder):
     (tmp_path / "results.csv").write_text(table.replace("rebound", "rebound", 1).replace(",4500,", ",many,", 1))
     with pytest.raises(InvalidInput, match=r"line 2: .*many"):
         plot(tmp_path)
+
+
+def test_time_steps_that_nobody_asked_for_tell_no_curves_apart(figures_folder):
+    rows = [
+        row for row in table(figures_folder) if (row.angle, row.restitution, row.tangential) == (90, 0.7, "impulse")
+    ]
+    assert len({row.timestep for row in rows}) > 3
+    assert len(_curves([*rows, *map(resolved, rows)])) == 1
+    assert len(_curves([*rows, replace(rows[0], timestep=1e-9)])) > 1

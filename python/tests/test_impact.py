@@ -1,7 +1,9 @@
 """Ranges of an impact's parameters and what follows from them."""
 
 import math
+import pickle
 import random
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
@@ -9,7 +11,7 @@ import numpy as np
 import pytest
 
 from dustdetach import Impact, InvalidInput
-from dustdetach.impact import METHODS, PARAMETER_TYPES
+from dustdetach.parameters import METHODS, PARAMETER_TYPES
 
 
 def test_the_reference_case_has_4500_grains():
@@ -175,3 +177,17 @@ def test_bare_cap_from_the_geometry():
     assert Impact(speed=8.0, carrier_diameter=0.1e-3, grain_diameter=5e-6).bare == 0.50
     with pytest.raises(InvalidInput, match="--bare: nan is not a finite number"):
         Impact(speed=8.0, bare=math.nan)
+
+
+def test_the_time_step_follows_what_is_replaced_unless_it_was_asked_for():
+    impact = Impact(speed=8.0)
+    assert replace(impact, speed=1.0) == Impact(speed=1.0)
+    assert replace(impact, speed=1.0).timestep > impact.timestep
+    assert replace(impact, method="resolved").timestep == 1e-9
+    assert replace(replace(impact, timestep=2e-9), speed=1.0).timestep == 2e-9
+    assert pickle.loads(pickle.dumps(impact)) == impact
+    assert replace(pickle.loads(pickle.dumps(impact)), speed=1.0) == Impact(speed=1.0)
+
+
+def test_the_longest_time_step_is_kept():
+    assert Impact(speed=1e-9).timestep == 1e-7

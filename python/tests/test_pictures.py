@@ -9,7 +9,8 @@ from matplotlib import pyplot as plt
 
 from dustdetach import Impact, InvalidInput, MachineFault
 from dustdetach import pictures as module
-from dustdetach.pictures import draw_impact, draw_moments, draw_texture, read_fates
+from dustdetach.pictures import draw_impact, draw_moments, draw_texture
+from dustdetach.shares import read_fates
 from dustdetach.texture import make_texture, read_texture
 
 
@@ -34,10 +35,20 @@ def test_a_texture(tmp_path):
     pixels = plt.imread(tmp_path / "t.png")[:, :, :3]
     assert min(pixels.shape[:2]) > 200
     height, width = pixels.shape[:2]
+    # black, the scale bar, in the lower left corner alone
+    black = (pixels < 0.1).all(axis=2)
+    assert black[int(0.9 * height) :, : width // 3].any() and not black[: height // 3, : width // 4].any()
     # corners white, the bare cap below the middle the carrier's blue grey
     assert (pixels[0, 0] == 1).all()
     cap = pixels[int(0.88 * height), width // 2]
     assert cap[2] > cap[0]
+
+
+def test_marks_are_a_round_length_and_the_direction_of_the_impact():
+    assert [module._round_length(most) for most in (2.1e-4, 4.9e-5, 9.9e-6)] == pytest.approx([2e-4, 2e-5, 5e-6])
+    # from the side, a straight impact goes down and one along the wall to the right
+    assert module._projected((0, 0, -1), (90, -90)) == pytest.approx([0, 1])
+    assert module._projected((1, 0, 0), (90, -90)) == pytest.approx([1, 0])
 
 
 def test_an_impact_colours_what_comes_off(tmp_path):

@@ -1,12 +1,15 @@
 """Impacts against an independent closed form, and what the record says about itself."""
 
 import math
+import random
 from dataclasses import replace
 
 import pytest
 from closed_form import collide, damping, hemispheres
 
 from dustdetach import Impact, InvalidInput, MachineFault, run
+from dustdetach.impact import default_timestep
+from dustdetach.runner import Bench, _deck
 
 SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0)
 RESTITUTIONS = (0.5, 0.6, 0.7, 0.8, 0.9)
@@ -206,7 +209,7 @@ def test_a_resolved_impact_fills_the_record(resolved_result):
 
 def test_few_grains_do_not_change_the_collision(resolved_impact, resolved_result):
     # all grains weigh 0.37 % of the carrier at a coverage of 0.2, and these a hundredth of that
-    functions = run(replace(resolved_impact, method="functions"))
+    functions = run(replace(resolved_impact, method="functions", timestep=1e-9))
     assert resolved_result.contact_time == pytest.approx(functions.contact_time, abs=2.5 * resolved_impact.timestep)
     assert resolved_result.peak_acceleration == pytest.approx(functions.peak_acceleration, rel=2e-4)
     assert resolved_result.restitution_realised == pytest.approx(functions.restitution_realised, rel=2e-4)
@@ -231,3 +234,85 @@ def test_each_method_writes_its_own_files_only(tmp_path):
     with pytest.raises(InvalidInput, match="frames"):
         run(Impact(speed=8.0), frames=tmp_path / "frames")
     assert list(tmp_path.iterdir()) == []
+
+
+#: one after another in any order: what a LAMMPS instance keeps of an impact must not reach the next one
+ROW = [
+    {"speed": 8.0},
+    {"speed": 8.0, "angle": 20.0, "wall_friction": 0.3},
+    {"speed": 3.0, "angle": 60.0, "restitution": 0.3},
+    {"speed": 12.0, "tangential": "estimate", "rotation": False},
+    {"speed": 12.0, "tangential": "integrate", "grain_damping": 0.2, "coverage": 0.01},
+    {"speed": 12.0, "grain_damping": 0.2},
+    {"speed": 5.0, "seed": 2, "spread": 2.0},
+    {"speed": 5.0, "seed": 2, "hamaker": 5e-20, "friction": 0.1},
+    {"speed": 5.0, "carrier_diameter": 0.5e-3},
+    {"speed": 5.0, "bare": 0.5, "grain_diameter": 30e-6, "timestep": 2e-9},
+    {"speed": 0.3, "angle": 45.0},
+    {"speed": 100.0, "angle": 1e-3},
+    {"speed": 5.0, "angle": 45.0, "carrier": "glass", "carrier_diameter": 2e-3, "wall": "steel", "coverage": 0.15},
+    {"speed": 5.0, "surface_energy": 0.01},
+    {"speed": 5.0, "carrier_density": 2500.0, "grain_density": 2000.0},
+    {"speed": 8.0, "wall_modulus": 3e9, "wall_poisson": 0.4},
+    {"speed": 8.0, "spin": 1000.0, "angle": 60.0},
+    {"speed": 8.0, "distribution": "lognormal", "distribution_spread": 1.3},
+    {"speed": 4.0, "distribution": "rrsb", "distribution_spread": 4.0},
+]
+
+
+def without_seconds(result):
+    return replace(result, loop_seconds=0.0, wall_seconds=0.0)
+
+
+def test_impacts_in_a_row_are_those_alone_to_the_last_digit():
+    impacts = [Impact(**changes) for changes in ROW]
+    alone = [without_seconds(run(impact)) for impact in impacts]
+    chance = random.Random(3)
+    with Bench() as bench:
+        for _ in range(4):
+            order = chance.sample(range(len(impacts)), len(impacts))
+            for number in order:
+                assert without_seconds(bench.run(impacts[number])) == alone[number]
+
+
+def test_a_refused_impact_does_not_spoil_the_next():
+    good, hopeless = Impact(speed=8.0), Impact(speed=8.0, coverage=Impact(speed=8.0).largest_coverage)
+    alone = without_seconds(run(good))
+    with Bench() as bench:
+        for _ in range(2):
+            assert without_seconds(bench.run(good)) == alone
+            with pytest.raises(InvalidInput, match="cannot be placed"):
+                bench.run(hopeless)
+
+
+def test_what_lammps_is_opened_anew_for():
+    assert _deck("functions").asked == {"plugin", "carrier_diameter", "radius", "carrier_modulus", "carrier_poisson"}
+    assert _deck("resolved").setup == ""
+
+
+def test_seconds_are_those_of_each_impact():
+    with Bench() as bench:
+        results = [bench.run(Impact(speed=speed)) for speed in (4.0, 8.0)]
+    assert all(0 < result.loop_seconds < result.wall_seconds for result in results)
+
+
+@pytest.mark.parametrize(
+    ("changes", "steps"),
+    [
+        ({}, 300),
+        ({"angle": 30.0, "restitution": 0.5}, 300),
+        ({"restitution": 0.3}, 1000),
+        ({"restitution": 0.9, "tangential": "estimate", "carrier_diameter": 0.3e-3}, 300),
+        ({"grain_damping": 0.2}, 3000),
+        ({"wall_friction": 0.3, "angle": 60.0}, 3000),
+    ],
+)
+def test_the_default_time_step_is_short_enough(changes, steps):
+    for speed in (2.0, 8.0, 16.0):
+        impact = Impact(speed=speed, **changes)
+        assert impact.timestep == pytest.approx(impact.hertz_contact_time / steps, rel=0.05)
+        result = run(impact)
+        assert default_timestep(result) == impact.timestep
+        fine = run(replace(impact, timestep=impact.timestep / 8))
+        assert result.dispersion_ratio == pytest.approx(fine.dispersion_ratio, abs=0.001 if steps < 3000 else 0.008)
+        assert result.restitution_realised == pytest.approx(impact.restitution, rel=0.005)

@@ -7,7 +7,7 @@ import pytest
 from texture_files import SMALL, disagreements
 
 from dustdetach import Impact, InvalidInput
-from dustdetach.texture import Distribution, make_texture, read_texture
+from dustdetach.texture import make_texture, read_texture
 
 
 @pytest.fixture(scope="module")
@@ -169,19 +169,32 @@ def test_the_command_makes_and_checks(command, tmp_path):
 
 def test_distributed_sizes(tmp_path):
     path = tmp_path / "texture.txt"
-    make_texture(Impact(speed=1.0, coverage=0.05), path, Distribution("rrsb", 15e-6, 3.0))
+    impact = Impact(speed=1.0, coverage=0.05, grain_diameter=15e-6, distribution="rrsb", distribution_spread=3.0)
+    make_texture(impact, path)
     texture = read_texture(path)
     assert 0.05 <= texture.coverage < 0.0502
     volumes = np.sort(texture.diameters) ** 3
     median = np.sort(texture.diameters)[np.searchsorted(np.cumsum(volumes), volumes.sum() / 2)]
     # 3000 grains: a few per cent of scatter of a quantile
     assert median == pytest.approx(15e-6, rel=0.05)
+    # the impact knows about how many there will be, and between which sizes
+    assert len(texture.diameters) == pytest.approx(impact.grains, rel=0.05)
+    assert impact.finest <= texture.diameters.min() * (1 + 1e-9)
+    assert texture.diameters.max() <= impact.coarsest * (1 + 1e-9)
 
 
 @pytest.mark.parametrize(
     ("words", "named"),
-    [(("weibull", 15e-6, 2.0), "weibull"), (("lognormal", 0.0, 2.0), "median"), (("lognormal", 1e-5, 1.0), "spread")],
+    [
+        (("weibull", 15e-6, 2.0), "--distribution: unknown choice 'weibull'; allowed: none, lognormal, rrsb"),
+        (("lognormal", 0.0, 2.0), "--grain-diameter: 0 is out of range"),
+        (("lognormal", 1e-5, 1.0), "--distribution: spread 1 is out of range; allowed: above 1 for lognormal"),
+        (("rrsb", 1e-5, 0.1), "--grain-diameter: 1e-05 is out of range; allowed: above 0 and below 4"),
+        (("none", 1e-5, 2.0), "--distribution-spread: 2 does nothing without a distribution"),
+    ],
 )
 def test_wrong_distributions_are_named(words, named):
-    with pytest.raises(InvalidInput, match=named):
-        Distribution(*words)
+    kind, median, spread = words
+    with pytest.raises(InvalidInput) as refusal:
+        Impact(speed=1.0, distribution=kind, grain_diameter=median, distribution_spread=spread)
+    assert str(refusal.value).startswith(named)

@@ -5,6 +5,8 @@
 #ifndef DUST_CORE_CRITERIA_H
 #define DUST_CORE_CRITERIA_H
 
+#include <tuple>
+
 namespace Dust {
 
 /*! How a grain left its carrier */
@@ -17,6 +19,9 @@ struct Criteria {
   bool meet = false;       //!< grains knock others off (entrainment.h)
   //! the law of tangential lift-off, a file each (tangential_law.h)
   enum Tangential { OFF, FRICTIONLESS, ESTIMATE, IMPULSE, INTEGRATE } tangential = IMPULSE;
+
+  auto all() const { return std::make_tuple(count, ibrahim, meet, tangential); }
+  bool operator==(const Criteria &other) const { return all() == other.all(); }
 };
 
 }    // namespace Dust

@@ -61,7 +61,7 @@ void Entrainment::follow(const PastCollision &past, const Quaternion &axes, cons
 void Entrainment::follow_collision(const PastCollision &past)
 {
   for (const Substep &part : substeps(past)) {
-    const int steps = std::max(1, static_cast<int>(std::ceil(part.dt / table.material().step - 1.0e-9)));
+    const int steps = std::max(1, static_cast<int>(std::ceil(part.dt / table.step() - 1.0e-9)));
     Motion motion = {};
     double acceleration[3], spin0[3], spin1[3];
     frame.to_space(part.acceleration, acceleration);
@@ -93,7 +93,7 @@ void Entrainment::follow_collision(const PastCollision &past)
 void Entrainment::fly(double time)
 {
   due += time;
-  const double h = table.material().step;
+  const double h = table.step();
   Motion motion = {};
   std::copy_n(spin, 3, motion.spin);
   for (; due >= h && !over(); due -= h) {

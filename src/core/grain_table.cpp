@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 using namespace Dust;
 
@@ -22,28 +21,48 @@ namespace {
 
 constexpr double INF = std::numeric_limits<double>::infinity();
 
+// a grain where it is sorted: what is compared lies in a row
+struct Place {
+  double at;
+  int grain;
+};
+
 // orders grains so that each run of PATCH is a compact patch: halves the set across its longest side, again and again
-void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
+void order_in_patches(const std::vector<Grain> &grains, Place *first, Place *last)
 {
   const auto count = last - first;
   if (count <= PATCH) return;
   double lo[3] = {2.0, 2.0, 2.0}, hi[3] = {-2.0, -2.0, -2.0};
-  for (int *i = first; i != last; ++i)
+  for (const Place *i = first; i != last; ++i)
     for (int d = 0; d < 3; d++) {
-      lo[d] = std::min(lo[d], grains[*i].n[d]);
-      hi[d] = std::max(hi[d], grains[*i].n[d]);
+      lo[d] = std::min(lo[d], grains[i->grain].n[d]);
+      hi[d] = std::max(hi[d], grains[i->grain].n[d]);
     }
   int side = 0;
   for (int d = 1; d < 3; d++)
     if (hi[d] - lo[d] > hi[side] - lo[side]) side = d;
-  int *middle = first + (count / PATCH + 1) / 2 * PATCH;
+  for (Place *i = first; i != last; ++i) i->at = grains[i->grain].n[side];
+  Place *middle = first + (count / PATCH + 1) / 2 * PATCH;
   // ties broken by number: the same order on every machine
-  std::nth_element(first, middle, last, [&](int a, int b) {
-    const double na = grains[a].n[side], nb = grains[b].n[side];
-    return na != nb ? na < nb : a < b;
-  });
+  std::nth_element(first, middle, last,
+                   [](const Place &a, const Place &b) { return a.at != b.at ? a.at < b.at : a.grain < b.grain; });
   order_in_patches(grains, first, middle);
   order_in_patches(grains, middle, last);
+}
+
+// in all but its place
+bool is_like(const Grain &a, const Grain &b) { return a.radius == b.radius && a.adhesion == b.adhesion; }
+
+// of contacts with a damping ratio: most tables of a process have that of the last one, and finding it takes longest
+double overshoot_of(double damping)
+{
+  if (damping < 0.0) return 0.0;
+  thread_local double last = -1.0, overshoot = 0.0;
+  if (damping != last) {
+    overshoot = Dust::overshoot(damping);
+    last = damping;
+  }
+  return overshoot;
 }
 
 }    // namespace
@@ -51,7 +70,7 @@ void order_in_patches(const std::vector<Grain> &grains, int *first, int *last)
 /* ---------------------------------------------------------------------- */
 
 GrainTable::GrainTable(const Texture &texture, const Material &material, const Criteria &criteria) :
-    matter(material), asked(criteria), ring(material.damping >= 0.0 ? Dust::overshoot(material.damping) : 0.0),
+    matter(material), asked(criteria), ring(overshoot_of(material.damping)),
     law(tangential_law(criteria.tangential, ring > 0.0)), rp(texture.carrier_radius), sites(texture.grains.size())
 {
   const int n = grains();
@@ -67,8 +86,8 @@ GrainTable::GrainTable(const Texture &texture, const Material &material, const C
 void GrainTable::fill_sites(const Texture &texture)
 {
   const int n = grains();
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<Place> order(n);
+  for (int i = 0; i < n; i++) order[i].grain = i;
   order_in_patches(texture.grains, order.data(), order.data() + n);
 
   const auto mass_of = [&](const Grain &g) { return 4.0 / 3.0 * PI * g.radius * g.radius * g.radius * matter.density; };
@@ -80,22 +99,25 @@ void GrainTable::fill_sites(const Texture &texture)
   if (finest->radius == coarsest->radius) mass = mass_of(*finest);
 
   for (int bit = 0; bit < n; bit++) {
-    const Grain &g = texture.grains[order[bit]];
-    const double r12 = effective_radius(rp, g.radius);
+    const Grain &g = texture.grains[order[bit].grain];
     Site &site = sites[bit];
+    if (bit > 0 && is_like(g, texture.grains[order[bit - 1].grain])) {
+      site = sites[bit - 1];
+    } else {
+      const double r12 = effective_radius(rp, g.radius);
+      const double gamma = matter.gamma * g.adhesion;    // F_c goes with it, a0 with its cube root
+      site.hold = pull_off_force(gamma, r12) / mass_of(g);
+      site.lever = equilibrium_contact_radius(gamma, r12, matter.modulus) / g.radius;
+      site.shell = rp + g.radius;
+      site.weight = mass_of(g) / mass;
+    }
     std::copy_n(g.n, 3, site.n);
-    const double gamma = matter.gamma * g.adhesion;    // F_c goes with it, a0 with its cube root
-    site.hold = pull_off_force(gamma, r12) / mass_of(g);
-    site.lever = equilibrium_contact_radius(gamma, r12, matter.modulus) / g.radius;
-    site.shell = rp + g.radius;
-    site.weight = mass_of(g) / mass;
-    site.grain = order[bit];
+    site.grain = order[bit].grain;
   }
-  if (matter.step > 0.0) return;
   // half of the time sqrt(m/k0) of a grain of mean mass
   const double radius = std::cbrt(mass / (4.0 / 3.0 * PI * matter.density)), r12 = effective_radius(rp, radius);
   const double a0 = equilibrium_contact_radius(matter.gamma, r12, matter.modulus);
-  matter.step = 0.5 * std::sqrt(mass / (1.2 * matter.modulus * a0));
+  following_step = matter.step > 0.0 ? matter.step : 0.5 * std::sqrt(mass / (1.2 * matter.modulus * a0));
 }
 
 /* ---------------------------------------------------------------------- */

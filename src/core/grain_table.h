@@ -10,6 +10,7 @@
 #include "texture.h"
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace Dust {
@@ -28,6 +29,12 @@ struct Material {
   // for grains that meet (entrainment.h): surface energy of two grains over gamma, their combined modulus, how much
   // softer it is taken, and the time step, by default (0) half of sqrt(m/k0) of a grain of the mean mass
   double cohesion = 0.0, grain_modulus = 0.0, softening = 1.0, step = 0.0;
+
+  auto all() const
+  {
+    return std::make_tuple(density, gamma, modulus, friction, rolling, damping, cohesion, grain_modulus, softening, step);
+  }
+  bool operator==(const Material &other) const { return all() == other.all(); }
 };
 
 /*! One texture made ready for evaluation: what each grain needs to leave. Shared by all carriers, never changed.
@@ -84,6 +91,9 @@ class GrainTable {
   /*! Overshoot of contacts that ring (normal_motion.h), 0 if they do not */
   double overshoot() const { return ring; }
 
+  /*! Time step in which grains that meet are followed */
+  double step() const { return following_step; }
+
   /*! Whether inertia can make a grain slide (or leave) that moves with its carrier: if none can, it is at rest */
   bool may_move(const Motion &motion) const;
   /*! False only if may_move() is: the same from squares, without a root or a division
@@ -104,7 +114,7 @@ class GrainTable {
   double ring;
   const TangentialLaw *law;
   double rp;
-  double mass;
+  double mass, following_step;
   double hold_min, hold_max, shell_max, velocity2_min;
   double force_min[NMODES];
   double moving;

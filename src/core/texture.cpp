@@ -65,6 +65,7 @@ void Dust::check_texture(const Texture &texture, const std::vector<int> &lines)
   const double tolerance = 1.0e-9;    // round-off of the text, of the grain's size or of 1 rad
   const double cos_cap = std::cos(std::max(0.0, texture.bare.half_angle - tolerance));
   const double reach = 2.0 * std::asin(largest / (texture.carrier_radius + largest));
+  const Neighbourhood near(reach);
   ShellGrid grid(reach, texture.grains.size());
   for (size_t i = 0; i < texture.grains.size(); i++) {
     const Grain &a = texture.grains[i];
@@ -74,11 +75,11 @@ void Dust::check_texture(const Texture &texture, const std::vector<int> &lines)
                          " rad from its axis: it must be " + number_text(texture.bare.half_angle) + " at least");
     size_t other = 0;
     const double ra = texture.carrier_radius + a.radius;
-    const bool overlap = grid.any_near(a.n, reach, [&](int id) {
+    const bool overlap = grid.any_near(a.n, near, [&](int id, double chord2) {
       const Grain &b = texture.grains[id];
       const double rb = texture.carrier_radius + b.radius;
       other = id;
-      const double distance2 = (ra - rb) * (ra - rb) + ra * rb * chord2(a.n, b.n);
+      const double distance2 = (ra - rb) * (ra - rb) + ra * rb * chord2;
       const double touch = (a.radius + b.radius) * (1.0 - tolerance);
       return distance2 < touch * touch;
     });

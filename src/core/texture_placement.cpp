@@ -24,13 +24,21 @@ constexpr double MIN_GAP = 1.0e-3;    // between two grains, of the sum of their
 constexpr double CUT = 0.01;          // of a size distribution, at either end, by volume
 constexpr double JAMMED = 0.547;      // share of the shell of their centres that equal grains cover when no more fit
 
-// unit vector at height z and azimuth phi
-void point_at(double z, double phi, double *n)
+struct Height {
+  double z, s;
+  explicit Height(double height) : z(height), s(std::sqrt(std::max(0.0, 1.0 - height * height))) {}
+};
+struct Azimuth {
+  double cosine, sine;
+  explicit Azimuth(double phi) : cosine(std::cos(phi)), sine(std::sin(phi)) {}
+};
+
+// unit vector there
+void point_at(const Height &height, const Azimuth &azimuth, double *n)
 {
-  const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
-  n[0] = s * std::cos(phi);
-  n[1] = s * std::sin(phi);
-  n[2] = z;
+  n[0] = height.s * azimuth.cosine;
+  n[1] = height.s * azimuth.sine;
+  n[2] = height.z;
 }
 
 /* ----------------------------------------------------------------------
@@ -44,6 +52,7 @@ class Placement {
       zlo(lowest_z), carrier(carrier_radius), least(radii.back()), size(0.0), number(radii.size()),
       cells_for(radii.front()), tries(0), random(numbers)
   {
+    grains.reserve(number);
   }
 
   // places one grain, no larger than the last one; false if there is no room for it
@@ -89,7 +98,9 @@ class Placement {
   double cells_for;           // that size, at most the next grain's
   size_t tries;               // in these cells, until the next refinement
   struct Level {              // grains between a size and half of it
-    double largest, angle;    // that size, and where its grains can be neighbours of the present one
+    double largest;           // that size
+    double most;              // least_chord2() of the present size and that one, no less
+    Neighbourhood near;       // where its grains can be neighbours of the present one
     ShellGrid grid;
   };
   std::vector<Level> levels;
@@ -108,15 +119,22 @@ class Placement {
     constexpr double ROUND_OFF = 1.0e-9;
     size = radius;
     if (levels.empty() || size < 0.5 * levels.back().largest)
-      levels.push_back({size, 0.0, ShellGrid(reach(size, size), number - grains.size())});
-    for (Level &level : levels) level.angle = reach(size, level.largest) * (1.0 + ROUND_OFF);
+      levels.push_back({size, 0.0, 0.0, ShellGrid(reach(size, size), number - grains.size())});
+    for (Level &level : levels) {
+      level.most = least_chord2(size, level.largest) * (1.0 + ROUND_OFF);
+      level.near = reach(size, level.largest) * (1.0 + ROUND_OFF);
+    }
   }
 
-  // whether visit(id) is true for one of the grains that may be neighbours of one of this size, or a smaller one, at n
-  template <typename Visit> bool any_near(const double *n, Visit visit) const
+  // whether a grain is nearer to n than the chord that goes with its radius, of those that may be neighbours of one of
+  // this size, or a smaller one
+  template <typename Chord2> bool any_near(const double *n, Chord2 chord2_of) const
   {
-    return std::any_of(levels.begin(), levels.end(),
-                       [&](const Level &level) { return level.grid.any_near(n, level.angle, visit); });
+    return std::any_of(levels.begin(), levels.end(), [&](const Level &level) {
+      return level.grid.any_near(n, level.near, [&](int id, double chord2) {
+        return chord2 < level.most && chord2 < chord2_of(grains[id].radius);
+      });
+    });
   }
 
   bool try_cell(const Cell &cell)
@@ -124,32 +142,44 @@ class Placement {
     Grain grain;
     grain.radius = size;
     const double z = cell.z0 + uniform(random) * (cell.z1 - cell.z0);
-    point_at(z, cell.phi0 + uniform(random) * (cell.phi1 - cell.phi0), grain.n);
-    if (any_near(grain.n,
-                 [&](int id) { return chord2(grain.n, grains[id].n) < least_chord2(size, grains[id].radius); }))
-      return false;
+    point_at(Height(z), Azimuth(cell.phi0 + uniform(random) * (cell.phi1 - cell.phi0)), grain.n);
+    if (any_near(grain.n, [this](double radius) { return least_chord2(size, radius); })) return false;
     levels.back().grid.insert(static_cast<int>(grains.size()), grain.n);
     grains.push_back(grain);
     return true;
   }
 
   // true if one grain excludes the whole cell: the cell's farthest points are corners once it is narrower than pi/2
-  bool covered(const Cell &cell) const
+  bool covered(const Height (&z)[2], const Azimuth (&phi)[2], const Height &middle_z, const Azimuth &middle_phi) const
   {
-    if (cell.phi1 - cell.phi0 > 0.5 * PI) return false;
-    double middle[3], corner[4][3];
-    point_at(0.5 * (cell.z0 + cell.z1), 0.5 * (cell.phi0 + cell.phi1), middle);
-    point_at(cell.z0, cell.phi0, corner[0]);
-    point_at(cell.z0, cell.phi1, corner[1]);
-    point_at(cell.z1, cell.phi0, corner[2]);
-    point_at(cell.z1, cell.phi1, corner[3]);
-    double radius = 0.0;
-    for (auto &c : corner) radius = std::max(radius, std::sqrt(chord2(middle, c)));
-    return any_near(middle, [&](int id) {
-      const double limit =
-          std::sqrt(least_chord2(cells_for, grains[id].radius)) - radius;    // chords obey the triangle inequality
-      return limit > 0.0 && chord2(middle, grains[id].n) < limit * limit;
+    double middle[3], radius = 0.0;
+    point_at(middle_z, middle_phi, middle);
+    for (const Height &high : z)
+      for (const Azimuth &wide : phi) {
+        double corner[3];
+        point_at(high, wide, corner);
+        radius = std::max(radius, std::sqrt(chord2(middle, corner)));
+      }
+    return any_near(middle, [&](double other) {
+      const double limit = std::sqrt(least_chord2(cells_for, other)) - radius;    // chords obey the triangle inequality
+      return limit > 0.0 ? limit * limit : 0.0;
     });
+  }
+
+  // appends the quarters of a cell that are not covered; sines and cosines of what they share are taken once
+  void quarter(const Cell &c, std::vector<Cell> &finer) const
+  {
+    const double z[3] = {c.z0, 0.5 * (c.z0 + c.z1), c.z1}, phi[3] = {c.phi0, 0.5 * (c.phi0 + c.phi1), c.phi1};
+    const bool wide = phi[1] - phi[0] > 0.5 * PI || phi[2] - phi[1] > 0.5 * PI;
+    const Height heights[3] = {Height(z[0]), Height(z[1]), Height(z[2])};
+    const Azimuth azimuths[3] = {Azimuth(phi[0]), Azimuth(phi[1]), Azimuth(phi[2])};
+    for (int j = 0; j < 2; j++) {
+      const Azimuth middle_phi(0.5 * (phi[j] + phi[j + 1]));
+      for (int i = 0; i < 2; i++)
+        if (wide || !covered({heights[i], heights[i + 1]}, {azimuths[j], azimuths[j + 1]},
+                             Height(0.5 * (z[i] + z[i + 1])), middle_phi))
+          finer.push_back({z[i], z[i + 1], phi[j], phi[j + 1]});
+    }
   }
 
   // quarters the cells until most are smaller than a grain's surroundings, and drops those without room
@@ -159,12 +189,7 @@ class Placement {
     do {
       if ((cells.empty()) || (cells[0].z1 - cells[0].z0 < 1.0e-12)) return false;
       std::vector<Cell> finer;
-      for (const Cell &c : cells) {
-        const double z = 0.5 * (c.z0 + c.z1), phi = 0.5 * (c.phi0 + c.phi1);
-        for (const Cell &quarter : {Cell{c.z0, z, c.phi0, phi}, Cell{z, c.z1, c.phi0, phi}, Cell{c.z0, z, phi, c.phi1},
-                                    Cell{z, c.z1, phi, c.phi1}})
-          if (!covered(quarter)) finer.push_back(quarter);
-      }
+      for (const Cell &c : cells) quarter(c, finer);
       cells.swap(finer);
     } while (!cells.empty() && cells[0].phi1 - cells[0].phi0 > wide);
     return !cells.empty();

@@ -46,7 +46,8 @@ TEST(ShellGrid, FindsAllNeighbours)
     for (const double angle : {reach, 0.3 * reach})
       for (const Point &centre : centres) {
         std::set<int> visited;
-        EXPECT_FALSE(grid.any_near(centre.data(), angle, [&](int id) {
+        EXPECT_FALSE(grid.any_near(centre.data(), angle, [&](int id, double distance2) {
+          EXPECT_EQ(distance2, chord2(centre.data(), all[id].data()));
           EXPECT_TRUE(visited.insert(id).second) << "twice";
           return false;
         }));
@@ -67,7 +68,7 @@ TEST(ShellGrid, LooksAtFewOthers)
   for (size_t k = 0; k < all.size(); k++) grid.insert(static_cast<int>(k), all[k].data());
   double visited = 0.0, near = 0.0;
   for (const Point &centre : points(1000, 4))
-    grid.any_near(centre.data(), 0.01, [&](int id) {
+    grid.any_near(centre.data(), 0.01, [&](int id, double) {
       visited++;
       near += chord2(all[id].data(), centre.data()) < 0.01 * 0.01;
       return false;
@@ -83,7 +84,7 @@ TEST(ShellGrid, StopsAtTheFirstYes)
   grid.insert(7, a.data());
   grid.insert(8, a.data());
   int visits = 0;
-  EXPECT_TRUE(grid.any_near(a.data(), 0.5, [&](int id) {
+  EXPECT_TRUE(grid.any_near(a.data(), 0.5, [&](int id, double) {
     visits++;
     return id == 7 || id == 8;
   }));
@@ -102,7 +103,7 @@ TEST(ShellGrid, MemoryGoesWithTheNumberOfPoints)
   ShellGrid grid(1.0e-9, 10);
   const Point a = {0.6, 0.0, 0.8}, b = {0.6, 5.0e-10, 0.8};
   grid.insert(0, a.data());
-  EXPECT_TRUE(grid.any_near(b.data(), 1.0e-9, [](int) { return true; }));
+  EXPECT_TRUE(grid.any_near(b.data(), 1.0e-9, [](int, double) { return true; }));
   ShellGrid many(1.0e-9, 100000);
   EXPECT_LT(most_memory() - before, 20000);
 }

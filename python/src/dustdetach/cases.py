@@ -12,7 +12,9 @@ from typing import Any
 
 from .errors import InvalidInput, shortened, shown
 from .files import as_path, read_text
-from .impact import METHODS, PARAMETERS, Impact
+from .impact import Impact
+from .parameters import ABOUT, METHODS, PARAMETER_TYPES, PARAMETERS
+from .ranges import RANGE_SCHEMAS, SAMPLING_SCHEMA, Sampling, is_distribution, listed, take_sampling
 
 #: impact speeds of both figures, m/s: dense where the near side lets go (1-4) and the far side begins (5-8)
 SPEEDS = (
@@ -78,26 +80,40 @@ def _by(method: str, case: Impact) -> Impact:
 def read_cases(path: str | Path) -> list[Impact]:
     """Read a sweep from a TOML file.
 
-    Each key is a parameter of `Impact` with one value or a list of values; every combination is a case. Tables
-    ``[[case]]`` may follow: each replaces some of the keys above, and the sweep is what all of them make together.
+    Each key is a parameter of `Impact` with one value, a list, a range, replicas or a distribution; all combinations
+    are cases. Tables ``[[case]]`` may follow: each replaces some of the keys above, and the sweep is what all of them
+    make together.
 
-        speed = [2, 4, 8]
+        speed = { from = 2, to = 8, steps = 4 }
         restitution = 0.7
+        seed = { replicas = 3 }
         [[case]]
         angle = 90
         [[case]]
         angle = [30, 60]
         wall_friction = [0.05, 0.3]
 
+    Keys with a distribution, such as ``z0 = { uniform = [0.3e-9, 0.5e-9] }``, are drawn together, ``samples`` times,
+    for each combination of the others; see `dustdetach.ranges`.
+
     Raises:
         InvalidInput: no such file, not TOML, an unknown key, a value out of range; the message names file and key.
     """
     path = as_path(path, "read_cases")
+    return _cases_of(path, read_toml(path, f"{', '.join(NAMED)} or the name of a TOML file"))
+
+
+def read_toml(path: Path, allowed: str) -> dict[str, Any]:
+    """The content of a TOML file.
+
+    Raises:
+        InvalidInput: no such file, or not TOML; the message names it.
+    """
     if not os.path.lexists(path):
-        raise InvalidInput(f"{path}: no such file; allowed: {', '.join(NAMED)} or the name of a TOML file")
+        raise InvalidInput(f"{path}: no such file; allowed: {allowed}")
     text = read_text(path)
     try:
-        content = tomllib.loads(text)
+        return tomllib.loads(text)
     except RecursionError:
         raise InvalidInput(f"{path}: not TOML that can be read: nested too deeply") from None
     except tomllib.TOMLDecodeError as error:
@@ -106,31 +122,68 @@ def read_cases(path: str | Path) -> list[Impact]:
         # Python takes no whole number of more than 4300 digits
         raise InvalidInput(f"{path}: a number of too many digits") from None
 
+
+def _cases_of(path: Path, content: dict[str, Any]) -> list[Impact]:
     tables = content.pop("case", [{}])
     if not (isinstance(tables, list) and tables and all(isinstance(table, dict) for table in tables)):
         raise InvalidInput(f"{path}: case: allowed: tables [[case]]")
     try:
-        sweeps = [_lists({**content, **table}) for table in tables]
-        count = sum(math.prod(map(len, lists.values())) for lists in sweeps)
+        sampling = take_sampling(content)
+        sweeps = [_Sweep({**content, **table}, sampling) for table in tables]
+        count = sum(sweep.count for sweep in sweeps)
         if count > MOST_CASES:
             raise InvalidInput(f"{shown(count)} cases; allowed: at most {MOST_CASES}")
-        cases = [impact for lists in sweeps for impact in _combinations(lists)]
+        cases = [impact for sweep in sweeps for impact in sweep.impacts()]
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from None
     return list(dict.fromkeys(cases))
 
 
-def _lists(values: dict[str, Any]) -> dict[str, list[Any]]:
-    """The values of each key of a table, a single one as a list of one."""
-    for name in values:
-        if name not in PARAMETERS:
-            raise InvalidInput(f"{shortened(name, 60)}: unknown key; allowed: {', '.join(PARAMETERS)}, case")
-    lists = {name: value if isinstance(value, list) else [value] for name, value in values.items()}
-    for name, entries in lists.items():
-        if not entries:
-            raise InvalidInput(f"{name}: empty list")
-    return lists
+class _Sweep:
+    """What one table makes: all combinations of the lists, each with all samples of the distributions."""
+
+    def __init__(self, values: dict[str, Any], sampling: Sampling) -> None:
+        for name in values:
+            if name not in PARAMETERS:
+                allowed = ", ".join((*PARAMETERS, "samples", "sampling", "sampling_seed", "case"))
+                raise InvalidInput(f"{shortened(name, 60)}: unknown key; allowed: {allowed}")
+        self._drawn = {name: value for name, value in values.items() if is_distribution(value)}
+        self._lists = {name: listed(name, value) for name, value in values.items() if name not in self._drawn}
+        self._sampling = sampling
+        self.count = math.prod(map(len, self._lists.values())) * (sampling.number if self._drawn else 1)
+
+    def impacts(self) -> list[Impact]:
+        """All of them."""
+        samples: list[dict[str, float]] = self._sampling.draw(self._drawn) if self._drawn else [{}]
+        return [
+            Impact.from_mapping({**dict(zip(self._lists, chosen, strict=True)), **sample})
+            for chosen in product(*self._lists.values())
+            for sample in samples
+        ]
 
 
-def _combinations(lists: dict[str, list[Any]]) -> list[Impact]:
-    return [Impact.from_mapping(dict(zip(lists, chosen, strict=True))) for chosen in product(*lists.values())]
+def json_schema() -> dict[str, Any]:
+    """JSON Schema of the TOML files that `read_cases` reads, from the descriptions of the parameters."""
+    keys = {name: _schema_of(name) for name in PARAMETERS}
+    table = {"type": "object", "properties": keys, "additionalProperties": False}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "sweep of dustdetach",
+        "type": "object",
+        "properties": {**keys, **SAMPLING_SCHEMA, "case": {"type": "array", "minItems": 1, "items": table}},
+        "additionalProperties": False,
+    }
+
+
+def _schema_of(name: str) -> dict[str, Any]:
+    """A value, a list of them, or, of a number, a range or a distribution."""
+    about, kind = ABOUT[name], PARAMETER_TYPES[name]
+    types = {"float": "number", "int": "integer", "str": "string", "bool": "boolean"}
+    one: dict[str, Any] = {"type": types[kind]}
+    if about.choices:
+        one["enum"] = list(about.choices)
+    ends = {"minimum": about.least, "exclusiveMinimum": about.above, "maximum": about.most}
+    one |= {key: end for key, end in {**ends, "exclusiveMaximum": about.below}.items() if end is not None}
+    unit = f", {about.unit}" if about.unit else ""
+    forms = [one, {"type": "array", "minItems": 1, "items": one}, *(RANGE_SCHEMAS if kind in ("float", "int") else ())]
+    return {"description": about.help + unit, "anyOf": forms}

@@ -7,42 +7,39 @@ written; 130 interrupted.
 from __future__ import annotations
 
 import argparse
+import json
+import math
 import os
 import sys
+import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from io import TextIOWrapper
 from pathlib import Path
 from typing import NoReturn, TypeAlias
 
-from .cases import NAMED, named_or_file, with_methods
-from .errors import DustError, InvalidInput, one_line
+from .about import option
+from .cases import NAMED, json_schema, named_or_file, with_methods
+from .completion import SHELLS, completion
+from .errors import DustError, InvalidInput, one_line, shown
 from .files import writable_file
-from .impact import BARE_FROM_GEOMETRY, METHODS, PARAMETER_TYPES, RINGING, TANGENTIAL, Impact, option
-from .result import Result
+from .impact import Impact
+from .materials import PROPERTIES, find_material, materials, use_materials
+from .parameters import ABOUT, DISTRIBUTIONS, METHODS, PARAMETER_TYPES, PARAMETERS, Parameters
+from .result import Result, described_materials
 from .version import __version__
 
-# what an option's help says; the ranges are those of Impact
-_HELP = {
-    "speed": "impact speed, m/s",
-    "angle": "between velocity and wall, degrees; 90 is straight",
-    "restitution": "coefficient of restitution of carrier and wall",
-    "coverage": "X0, grain cross-sections over the carrier's surface",
-    "bare": "half-angle of the bare cap, rad (so wide that no grain reaches the wall: 0.33 in the reference case)",
-    "grain_diameter": "m",
-    "carrier_diameter": "m",
-    "hamaker": "A_12 of grain and carrier, J; that of two grains stays at 10.1e-20 in a resolved run",
-    "z0": "separation at which van der Waals force and pull-off force are equal, m",
-    "spread": "geometric standard deviation of the grains' pull-off forces; 1: all alike",
-    "friction": "mu_f of grain and carrier",
-    "wall_friction": "mu of carrier and wall",
-    "grain_damping": "damping ratio of a grain's contact; resolved runs and --tangential " + " or ".join(RINGING),
-    "seed": "of the random texture",
-    "tangential": "tangential lift-off: " + ", ".join(TANGENTIAL),
-    "timestep": "s",
-}
 _Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
+#: parameters of a texture
 _TEXTURE = ("coverage", "bare", "grain_diameter", "carrier_diameter", "spread", "seed")
+#: parameters of measured impacts that a fit can be told; those that are left out make no difference to it
+_FIT = tuple(
+    name
+    for name in PARAMETERS
+    if name not in ("method", "seed", "coverage", "wall_hamaker", "grain_hamaker", "tangential")
+)
+#: these two and the grains' diameter make --distribution
+_DISTRIBUTION = ("distribution", "distribution_spread")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -108,15 +105,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     impact = _command(commands, "impact", "one impact", _impact)
-    impact.add_argument("--method", default=argparse.SUPPRESS, help=", ".join(METHODS) + f" ({Impact.method})")
-    for name in _HELP:
-        _add_parameter(impact, name, required=name == "speed")
-    impact.add_argument(
-        "--rotation",
-        action=argparse.BooleanOptionalAction,
-        default=argparse.SUPPRESS,
-        help="whether the functions follow the carrier's spin; resolved runs always do (--rotation)",
-    )
+    _add_parameters(impact, PARAMETERS)
     impact.add_argument("--json", action="store_true", help="print one JSON object")
     impact.add_argument(
         "--picture", type=Path, metavar="PNG", help="draw the carrier after the impact; four moments of a resolved one"
@@ -124,25 +113,45 @@ def _parser() -> argparse.ArgumentParser:
 
     sweep = _command(commands, "sweep", "many impacts into a folder; picks up where it stopped", _sweep)
     sweep.add_argument("cases", metavar="|".join(NAMED) + "|FILE.toml", help="a figure of the paper, or a TOML file")
-    sweep.add_argument("--method", help=", ".join(METHODS) + f", both (as the cases say, else {Impact.method})")
+    sweep.add_argument("--method", help=", ".join(METHODS) + f", both (as the cases say, else {Parameters.method})")
+    _add_materials(sweep)
     sweep.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the results")
     sweep.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (1)")
+    sweep.add_argument("--parquet", action="store_true", help="write results.parquet beside results.csv, with units")
     sweep.add_argument("--executor", default="local", help="local, or mpi under mpirun (local)")
 
     plot = _command(commands, "plot", "figures of a sweep as PNG and SVG", _plot)
     plot.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
+    for role, what in (("x", "along the axis"), ("color", "told by colour"), ("panel", "with a panel for each value")):
+        plot.add_argument(f"--{role}", metavar="P", help=f"the parameter {what}, in place of the figures by speed")
+    plot.add_argument("--y", metavar="COLUMN", help="the column drawn by --x (dispersion_ratio)")
+    plot.add_argument("--map", metavar="X,Y", help="a map of the dispersion ratio over two parameters")
+
+    fit = _command(commands, "fit", "material parameters from measured dispersion ratios, with intervals", _fit)
+    fit.add_argument(
+        "data", type=Path, metavar="DATA.csv", help="columns named as in results.csv; uncertainty, if known"
+    )
+    fit.add_argument(
+        "--free",
+        default="z0,spread",
+        metavar="NAMES",
+        help="what is fitted: z0, surface_energy or hamaker, spread, friction (z0,spread)",
+    )
+    fit.add_argument("--json", action="store_true", help="print one JSON object: for each parameter value, low, high")
+    fit.add_argument(
+        "--picture", type=Path, metavar="PNG", help="draw data and fit (DATA.fit.png; with --json only if given)"
+    )
+    _add_parameters(fit, _FIT, required=())
+
+    sensitivity = _command(commands, "sensitivity", "which uncertain input matters: Sobol indices", _sensitivity)
+    sensitivity.add_argument("cases", metavar="FILE.toml", help="one value, or a distribution, for each parameter")
+    _add_materials(sensitivity)
+    sensitivity.add_argument("--json", action="store_true", help="print one JSON object")
 
     texture = commands.add_parser("texture", help="make, check or draw a texture", description="Textures of grains.")
     textures = texture.add_subparsers(required=True, metavar="COMMAND")
     make = _command(textures, "make", "place grains on a carrier and write them to a file", _texture_make)
-    for name in _TEXTURE:
-        _add_parameter(make, name, required=False)
-    make.add_argument(
-        "--distribution",
-        nargs=3,
-        metavar=("KIND", "X50", "SPREAD"),
-        help="of sizes by volume: lognormal, median (m) and geometric standard deviation, or rrsb, median and exponent",
-    )
+    _add_parameters(make, (*_TEXTURE, *_DISTRIBUTION))
     make.add_argument("--out", type=Path, required=True, metavar="FILE", help="texture file")
     make.add_argument("--picture", type=Path, metavar="PNG", help="draw it, too")
     check = _command(textures, "check", "check a texture file", _texture_check)
@@ -151,9 +160,24 @@ def _parser() -> argparse.ArgumentParser:
     draw.add_argument("file", type=Path, metavar="FILE", help="texture file")
     draw.add_argument("--out", type=Path, required=True, metavar="PNG", help="picture")
 
+    shown_materials = _command(
+        commands, "materials", "the materials that have a name, and where their numbers are from", _materials
+    )
+    shown_materials.add_argument("names", nargs="*", metavar="NAME", help="these alone")
+    _add_materials(shown_materials)
+    shown_materials.add_argument("--json", action="store_true", help="print one JSON object")
+
+    complete = _command(commands, "completion", "a script that completes commands and options in a shell", _completion)
+    complete.add_argument("shell", metavar="|".join(SHELLS))
+
+    _command(commands, "schema", "JSON Schema of a sweep's TOML file, for editors", _schema)
+
     _command(commands, "doctor", "what is installed, and what is wrong with it", _doctor)
-    report = _command(commands, "report", "not there yet", _report)
+    report = _command(
+        commands, "report", "one HTML file of a sweep, to mail: figures, table, a carrier that turns", _report
+    )
     report.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
+    report.add_argument("--out", type=Path, metavar="FILE", help="the file (report.html in the folder)")
     return parser
 
 
@@ -163,27 +187,78 @@ def _command(commands: _Commands, name: str, text: str, run: Callable[[argparse.
     return parser
 
 
+def _add_parameters(
+    parser: argparse.ArgumentParser, names: Sequence[str], required: Sequence[str] = ("speed",)
+) -> None:
+    """The options of parameters, and those that stand for several of them."""
+    for name in names:
+        if name == "distribution":
+            parser.add_argument(
+                "--distribution",
+                nargs=3,
+                default=argparse.SUPPRESS,
+                metavar=("KIND", "X50", "SPREAD"),
+                help="of sizes by volume: lognormal, median (m) and geometric standard deviation, or rrsb, median and "
+                "exponent; in place of --grain-diameter",
+            )
+        elif name != "distribution_spread":
+            _add_parameter(parser, name, required=name in required)
+    _add_materials(parser)
+
+
 def _add_parameter(parser: argparse.ArgumentParser, name: str, *, required: bool) -> None:
+    about, default = ABOUT[name], getattr(Parameters, name, None)
+    unit = f", {about.unit}" if about.unit else ""
+    if about.follows:
+        unit += f" ({about.follows})"
+    elif PARAMETER_TYPES[name] == "bool":
+        unit += f" ({option(name)})"
+    elif default is not None:
+        unit += f" ({default:g})" if isinstance(default, float) else f" ({default})"
+    words = (about.help + unit).replace("%", "%%")
+    if PARAMETER_TYPES[name] == "bool":
+        parser.add_argument(option(name), action=argparse.BooleanOptionalAction, default=argparse.SUPPRESS, help=words)
+        return
     kind = {"float": float, "int": int, "str": str}[PARAMETER_TYPES[name]]
-    default = getattr(Impact, name, None)
-    if default is BARE_FROM_GEOMETRY:
-        default = None
     parser.add_argument(
         option(name),
         type=kind,
         required=required,
         default=argparse.SUPPRESS,
         metavar="WORD" if kind is str else "N" if kind is int else "X",
-        help=_HELP[name] + ("" if default is None else f" ({default:g})" if kind is not str else f" ({default})"),
+        help=words,
     )
 
 
+def _add_materials(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--materials", type=Path, metavar="FILE", help="TOML file of materials of your own")
+
+
 def _given(options: argparse.Namespace, names: Sequence[str]) -> dict[str, object]:
-    return {name: getattr(options, name) for name in names if hasattr(options, name)}
+    """The parameters that options give; --distribution gives three."""
+    if options.materials is not None:
+        use_materials(options.materials)
+    values = {name: getattr(options, name) for name in names if hasattr(options, name)}
+    if "distribution" in values:
+        if "grain_diameter" in values:
+            raise InvalidInput("--grain-diameter: the median of --distribution takes its place; allowed: one of both")
+        kind, *numbers = values["distribution"]
+        if kind not in DISTRIBUTIONS[1:]:
+            allowed = ", ".join(DISTRIBUTIONS[1:])
+            raise InvalidInput(f"--distribution: unknown choice {shown(kind)}; allowed: {allowed}")
+        try:
+            median, spread = map(float, numbers)
+        except ValueError:
+            raise InvalidInput(f"--distribution: {' '.join(numbers)}: not two numbers") from None
+        for name, value in (("median diameter", median), ("spread", spread)):
+            if not value > 0 or math.isinf(value):
+                raise InvalidInput(f"--distribution: {name} {value:g} is out of range; allowed: above 0")
+        values |= {"distribution": kind, "grain_diameter": median, "distribution_spread": spread}
+    return values
 
 
 def _impact(options: argparse.Namespace, _: bool) -> int:
-    impact = Impact.from_mapping(_given(options, ("method", *_HELP, "rotation")))
+    impact = Impact.from_mapping(_given(options, PARAMETERS))
     if options.picture is None:
         from .runner import run
 
@@ -227,6 +302,7 @@ def _summary(result: Result) -> str:
         [
             f"impact at {result.speed:g} m/s, {result.angle:g} degrees, restitution {result.restitution:g}, "
             f"{result.grains} grains",
+            *described_materials(result),
             f"dispersion ratio   {result.dispersion_ratio:.4f}",
             f"  by hemisphere    south {result.south:.4f}   north {result.north:.4f}",
             *modes,
@@ -240,6 +316,8 @@ def _summary(result: Result) -> str:
 def _sweep(options: argparse.Namespace, speaks: bool) -> int:
     from .sweeping import CasesFailed, sweep
 
+    if options.materials is not None:
+        use_materials(options.materials)
     cases = with_methods(named_or_file(options.cases), options.method)
     progress = _progress() if speaks else None
     try:
@@ -252,46 +330,63 @@ def _sweep(options: argparse.Namespace, speaks: bool) -> int:
         return 1
     if speaks:
         print(options.out / "results.csv")
+    if speaks and options.parquet:
+        from .result import read_csv
+        from .tables import PARQUET, write_parquet
+
+        print(write_parquet(options.out / PARQUET, read_csv(options.out / "results.csv")))
     return 0
 
 
 def _progress() -> Callable[[int, int, float], None]:
-    """Cases done and time left, off a terminal at the start and at each tenth of the way."""
+    """Cases done, pace and time left, off a terminal at the start and at each tenth of the way."""
     line = _StatusLine()
 
     def tell(done: int, total: int, left: float) -> None:
+        pace = f"{(total - done) / left:.3g} a second, " if left else ""
         # marks from 1: the start is one
-        line.tell(
-            f"{done}/{total} cases, {left:.0f} s left", 1 + 10 * done // max(total, 1), "\n" if done == total else ""
-        )
+        mark = 1 + 10 * done // max(total, 1)
+        line.tell(f"{done}/{total} cases, {pace}{left:.0f} s left", mark, "\n" if done == total else "")
 
     return tell
 
 
 def _plot(options: argparse.Namespace, _: bool) -> int:
-    from .figures import plot
+    roles = {
+        role: value.replace("-", "_")
+        for role in ("x", "color", "panel", "y")
+        if (value := getattr(options, role)) is not None
+    }
+    if options.map is not None:
+        from .plots import plot_map
 
-    for path in plot(options.folder):
+        if set(roles) - {"panel"}:
+            raise InvalidInput("--map: has both axes; allowed: with --panel alone")
+        axes = [name.strip().replace("-", "_") for name in options.map.split(",")]
+        if len(axes) != 2:
+            raise InvalidInput(f"--map: {options.map}; allowed: two parameters with a comma between them")
+        paths = plot_map(options.folder, *axes, **roles)
+    elif roles:
+        from .plots import plot_by
+
+        paths = plot_by(options.folder, **roles)
+    else:
+        from .figures import plot
+
+        paths = plot(options.folder)
+    for path in paths:
         print(path)
     return 0
 
 
 def _texture_make(options: argparse.Namespace, _: bool) -> int:
-    from .texture import Distribution, make_texture, read_texture
+    from .texture import make_texture, read_texture
 
-    distribution = None
-    if options.distribution:
-        kind, *numbers = options.distribution
-        try:
-            median, spread = map(float, numbers)
-        except ValueError:
-            raise InvalidInput(f"--distribution: {' '.join(numbers)}: not two numbers") from None
-        distribution = Distribution(kind, median, spread)
     # the speed of the impact does not matter to its texture
-    impact = Impact.from_mapping({"speed": 1.0, **_given(options, _TEXTURE)})
+    impact = Impact.from_mapping({"speed": 1.0, **_given(options, (*_TEXTURE, "distribution"))})
     out = writable_file(options.out, "--out")
     picture = _png(options.picture, "--picture") if options.picture else None
-    make_texture(impact, out, distribution)
+    make_texture(impact, out)
     texture = read_texture(out)
     if picture:
         from .pictures import draw_texture
@@ -327,6 +422,94 @@ def _png(path: Path, name: str) -> Path:
     return writable_file(path, name)
 
 
+def _fit(options: argparse.Namespace, _: bool) -> int:
+    from .fitting import fit, read_data
+
+    free = tuple(name.strip().replace("-", "_") for name in options.free.split(",") if name.strip())
+    picture = options.picture
+    if picture is None and not options.json:
+        picture = options.data.with_suffix(".fit.png")
+    if picture is not None:
+        picture = _png(picture, "--picture")
+    found = fit(read_data(options.data, free, _given(options, _FIT)), free)
+    if picture is not None:
+        from .fit_figure import draw_fit
+
+        draw_fit(found, picture)
+    if options.json:
+        print(json.dumps(found.to_mapping()))
+        return 0
+    for name, estimate in found.estimates.items():
+        about = ABOUT[name]
+        unit = f" {about.unit}" if about.unit else ""
+        print(
+            f"{name:15} {estimate.value:.4g}{unit}  ({estimate.low:.4g} to {estimate.high:.4g}, 95 % for all at once)"
+        )
+    for name in found.untold:
+        print(f"{name:15} not told by the data")
+    print("\n".join([*found.words, *described_materials(found.data.impacts[0])[:3], str(picture)]))
+    return 0
+
+
+def _sensitivity(options: argparse.Namespace, _: bool) -> int:
+    from .sensitivity import sensitivity
+
+    if options.materials is not None:
+        use_materials(options.materials)
+    line, began = _StatusLine(), time.monotonic()
+
+    def watch(done: int, total: int) -> None:
+        left = (time.monotonic() - began) / done * (total - done)
+        line.tell(f"{done}/{total} impacts, {left:.0f} s left", 10 * done // total, "\n" if done == total else "")
+
+    found = sensitivity(options.cases, watch)
+    if options.json:
+        print(json.dumps(vars(found)))
+        return 0
+    print(f"dispersion ratio   {found.mean:.4f} +- {found.deviation:.4f} ({found.impacts} impacts)")
+    for name in sorted(found.first, key=lambda name: -found.total[name]):
+        print(f"{name:18} first order {found.first[name]:5.2f}   total {found.total[name]:5.2f}")
+    return 0
+
+
+def _materials(options: argparse.Namespace, _: bool) -> int:
+    if options.materials is not None:
+        use_materials(options.materials)
+    chosen = [find_material(name, "materials") for name in options.names] or materials()
+    if options.json:
+        listed = {
+            each.name: {
+                "also": list(each.also),
+                **{
+                    key: {"value": getattr(each, key), "unit": about.unit, "source": each.sources.get(key, "")}
+                    for key, about in PROPERTIES.items()
+                },
+            }
+            for each in chosen
+        }
+        print(json.dumps(listed, indent=1, ensure_ascii=False))
+        return 0
+    for each in chosen:
+        print(each.name + (f" ({', '.join(each.also)})" if each.also else ""))
+        for key, about in PROPERTIES.items():
+            value = getattr(each, key)
+            if value is not None:
+                print(f"  {key:8} {f'{value:g} {about.unit}'.strip():14} {each.sources[key]}")
+    return 0
+
+
+def _completion(options: argparse.Namespace, _: bool) -> int:
+    if options.shell not in SHELLS:
+        raise InvalidInput(f"{shown(options.shell)}: unknown shell; allowed: {', '.join(SHELLS)}")
+    print(completion(_parser(), options.shell), end="")
+    return 0
+
+
+def _schema(_: argparse.Namespace, __: bool) -> int:
+    print(json.dumps(json_schema(), indent=1))
+    return 0
+
+
 def _doctor(_: argparse.Namespace, __: bool) -> int:
     from .doctor import examine
 
@@ -336,8 +519,12 @@ def _doctor(_: argparse.Namespace, __: bool) -> int:
     return 0 if all(finding.ok for finding in findings) else 1
 
 
-def _report(_: argparse.Namespace, __: bool) -> int:
-    raise InvalidInput("report is not there yet; allowed: plot")
+def _report(options: argparse.Namespace, _: bool) -> int:
+    from .report import write_report
+
+    out = options.out if options.out is None else writable_file(options.out, "--out")
+    print(write_report(options.folder, out))
+    return 0
 
 
 def _rank() -> int:

@@ -33,6 +33,10 @@ class LammpsMissing(DustError, RuntimeError):
     """LAMMPS, the plugin or a deck cannot be found or loaded: the message says what to do (exit status 1)."""
 
 
+class PackageMissing(DustError, RuntimeError):
+    """A Python package that only some functions need is not installed: the message says how to get it (1)."""
+
+
 class MachineFault(DustError, RuntimeError):
     """What was asked for is right, and the machine cannot do it, as on a full disk: the message names the file (1)."""
 

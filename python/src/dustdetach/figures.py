@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,20 +19,26 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .errors import InvalidInput
 from .files import as_path, replace_file
-from .impact import FASTEST
+from .impact import Impact, is_timestep_chosen
+from .parameters import ABOUT, FASTEST, PARAMETERS
 from .result import Result, read_csv
 from .sweeping import TABLE
+
+#: parameters that tell curves apart: all with a symbol, but for those that are an axis, a style or a replica
+_TELLING = tuple(name for name in PARAMETERS if ABOUT[name].symbol and name not in ("speed", "seed", "tangential"))
 
 #: colours that colour-blind readers can tell apart (Okabe and Ito 2008)
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+#: more curves than these in a figure by speed could not be told apart by a legend
+MOST_CURVES = 30
 #: for more curves than these: from dark to light in the order of the curves, in a map even to the eye
 COLOUR_MAP = "viridis"
 FORMATS = ("png", "svg")
 #: a second table of a folder, of resolved runs that its sweep has not made
 MORE = "resolved.csv"
 
-_STYLE: Any = {
+STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 9,
     "axes.titlelocation": "left",
@@ -48,24 +54,6 @@ _STYLE: Any = {
     "lines.linewidth": 1.6,
     "lines.markersize": 3.4,
     "svg.hashsalt": "dustdetach",
-}
-
-# parameters that tell curves apart: how a legend writes them, and the factor to that unit
-_LABELS = {
-    "restitution": ("$e_{{pw}}$ = {:.2g}", 1.0),
-    "angle": ("$\\alpha$ = {:g}°", 1.0),
-    "coverage": ("$X_0$ = {:g}", 1.0),
-    "bare": ("bare cap {:g} rad", 1.0),
-    "grain_diameter": ("$d_d$ = {:g} µm", 1e6),
-    "carrier_diameter": ("$d_p$ = {:g} mm", 1e3),
-    "hamaker": ("$A_{{12}}$ = {:g}·10$^{{-20}}$ J", 1e20),
-    "z0": ("$z_0$ = {:g} nm", 1e9),
-    "spread": ("$\\sigma_a$ = {:g}", 1.0),
-    "friction": ("$\\mu_f$ = {:g}", 1.0),
-    "wall_friction": ("$\\mu_w$ = {:g}", 1.0),
-    "grain_damping": ("$\\zeta$ = {:g}", 1.0),
-    "rotation": ("rotation {}", 1.0),
-    "timestep": ("$\\Delta t$ = {:g} ns", 1e9),
 }
 
 #: laws of tangential lift-off share the colour of their curve
@@ -84,15 +72,25 @@ Colour = str | tuple[float, float, float, float]
 def plot(folder: str | Path) -> list[Path]:
     """Draw ``figure4`` (straight impacts) and ``figure5`` (angles) from ``folder/results.csv``, what there is of them.
 
-    Lines are the detachment functions, the mean over seeds where there are several, dashed or dotted by other laws of
-    tangential lift-off than the first; open markers are resolved runs. Those of ``folder/resolved.csv``, a table that
-    another sweep has made, are drawn as well if it is there.
+    Lines are the detachment functions, the mean over seeds and their band where there are several, dashed or dotted by
+    other laws of tangential lift-off than the first; open markers are resolved runs. Those of ``folder/resolved.csv``,
+    a table that another sweep has made, are drawn as well if it is there.
 
     Returns:
         The files written, PNG and SVG.
 
     Raises:
         InvalidInput: no table, or nothing in it that makes a curve.
+    """
+    path, results = table_of(folder)
+    return draw_all(path, results, path.parent)
+
+
+def table_of(folder: str | Path) -> tuple[Path, list[Result]]:
+    """The table of a sweep's folder, and its rows with those of ``resolved.csv`` if it is there.
+
+    Raises:
+        InvalidInput: no table, or numbers in it that no impact has.
     """
     folder = as_path(folder, "plot")
     results = []
@@ -103,16 +101,39 @@ def plot(folder: str | Path) -> list[Path]:
         for row in rows:
             _check(row, table)
         results += rows
+    return folder / TABLE, results
+
+
+def draw_all_of(results: list[Result]) -> dict[str, list[Result]]:
+    """The figures that results make, each with its rows."""
     straight = [result for result in results if result.angle == 90]
-    oblique = _at_most_angles(results)
+    oblique = _with_angles(results)
     figures = {}
     if oblique:
         figures["figure5"] = oblique
     if len(_curves(straight)) > 1 or (straight and not oblique):
         figures["figure4"] = straight
     if not any(len({result.speed for result in rows}) > 1 for rows in figures.values()):
-        raise InvalidInput(f"{folder / TABLE}: no curve to draw: at least two speeds are needed")
-    return [path for name in sorted(figures) for path in draw(figures[name], folder / name)]
+        return {}
+    return figures
+
+
+def draw_all(path: Path, results: list[Result], folder: Path) -> list[Path]:
+    """Draw every figure that the rows of a table make into a folder, by any parameter if these make too many curves.
+
+    Raises:
+        InvalidInput: they make no curve.
+    """
+    figures = draw_all_of(results)
+    if any(len(_curves(rows)) > MOST_CURVES for rows in figures.values()):
+        from .plots import draw_by
+
+        return draw_by(path, results, folder)
+    if not figures:
+        raise InvalidInput(
+            f"{path}: no curve to draw: at least two speeds are needed, or --x with another parameter that varies"
+        )
+    return [file for name in sorted(figures) for file in draw(figures[name], folder / name)]
 
 
 def _check(row: Result, table: Path) -> None:
@@ -135,7 +156,7 @@ def draw(results: list[Result], stem: Path) -> list[Path]:
         The files written.
     """
     curves = _curves(results)
-    with plt.rc_context(_STYLE):
+    with plt.rc_context(STYLE):
         figure = plt.figure(figsize=(7.1, 3.9), layout="constrained")
         axes = figure.subplot_mosaic([["all", "north"], ["all", "south"]], width_ratios=[1.75, 1])
         panels: list[tuple[str, str, float, Callable[[Result], float]]] = [
@@ -155,23 +176,45 @@ def draw(results: list[Result], stem: Path) -> list[Path]:
         axes["south"].set_xlabel("Impact speed $v_p$ (m/s)")
         axes["north"].tick_params(labelbottom=False)
         _add_legend(figure, _legend(curves, results))
-        written = []
-        for suffix in FORMATS:
-            path = stem.with_name(f"{stem.name}.{suffix}")
-            with replace_file(path) as part:
-                figure.savefig(part, dpi=200, metadata={"Date": None} if suffix == "svg" else None)
-            written.append(path)
-        plt.close(figure)
+        figure.supxlabel(fixed_words(results), fontsize=6.5, color="0.35")
+        return save(figure, stem)
+
+
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Write a figure as PNG and SVG and close it; returns the files."""
+    written = []
+    for suffix in FORMATS:
+        path = stem.with_name(f"{stem.name}.{suffix}")
+        with replace_file(path) as part:
+            figure.savefig(part, dpi=200, metadata={"Date": None} if suffix == "svg" else None)
+        written.append(path)
+    plt.close(figure)
     return written
 
 
-def _at_most_angles(results: list[Result]) -> list[Result]:
-    """The rows at the coefficient of restitution with the most oblique rows; none if all are straight."""
-    counts = Counter(result.restitution for result in results if result.angle != 90)
-    if not counts:
-        return []
-    chosen = counts.most_common(1)[0][0]
-    return [result for result in results if result.restitution == chosen]
+#: of parameters that are the same everywhere these are said on a figure even if they have their default
+_SAID = ("carrier", "carrier_diameter", "wall", "grain", "grain_diameter", "coverage", "restitution", "angle", "speed")
+
+
+def fixed_words(results: Sequence[Result]) -> str:
+    """The parameters that are the same in all rows, for the foot of a figure; others at their default are left out."""
+    default = Impact(speed=1.0).values()
+    said = []
+    for name in _SAID + tuple(name for name in PARAMETERS if name not in _SAID):
+        values = {getattr(row, name) for row in results}
+        value = next(iter(values))
+        about = ABOUT[name]
+        if len(values) > 1 or not about.symbol or (name not in _SAID and (about.follows or value == default[name])):
+            continue
+        said.append(about.words(value))
+    half = -(-len(said) // 2) if len(said) > 8 else len(said)
+    return "\n".join(", ".join(line) for line in (said[:half], said[half:]) if line)
+
+
+def _with_angles(results: list[Result]) -> list[Result]:
+    """The rows at the coefficients of restitution that have oblique rows; none if all are straight."""
+    oblique = {result.restitution for result in results if result.angle != 90}
+    return [result for result in results if result.restitution in oblique]
 
 
 def _curves(results: list[Result]) -> dict[Curve, list[Result]]:
@@ -184,7 +227,20 @@ def _curves(results: list[Result]) -> dict[Curve, list[Result]]:
 
 
 def _differing(results: list[Result]) -> list[str]:
-    return [name for name in _LABELS if len({getattr(result, name) for result in results}) > 1]
+    found = [name for name in _TELLING if len({getattr(result, name) for result in results}) > 1]
+    # what follows from others that differ is no word of a legend
+    if is_timestep_chosen(results):
+        found = [name for name in found if name != "timestep"]
+    given = [name for name in found if not ABOUT[name].follows]
+    return [name for name in found if name in given or not _told(results, name, given)]
+
+
+def _told(results: list[Result], name: str, others: list[str]) -> bool:
+    """Whether the other parameters that differ tell this one."""
+    seen: dict[Curve, Any] = {}
+    keys = [tuple(getattr(result, other) for other in others) for result in results]
+    values = [getattr(result, name) for result in results]
+    return bool(others) and all(seen.setdefault(key, value) == value for key, value in zip(keys, values, strict=True))
 
 
 def _laws(results: Iterable[Result]) -> list[str]:
@@ -206,6 +262,9 @@ def _panel(axes: Axes, curves: dict[Curve, list[Result]], share: Callable[[Resul
                 speeds = sorted(means)
                 ratios = [sum(means[speed]) / len(means[speed]) for speed in speeds]
                 axes.plot(speeds, ratios, color=colour, clip_on=False, **_line(law, laws, marker))
+                if any(len(means[speed]) > 1 for speed in speeds):
+                    low, high = ([end(means[speed]) for speed in speeds] for end in (min, max))
+                    axes.fill_between(speeds, low, high, color=colour, alpha=0.2, linewidth=0)
         resolved = [row for row in rows if row.method == "resolved"]
         if resolved:
             speeds = [row.speed for row in resolved]
@@ -257,7 +316,7 @@ def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Li
     handles = []
     for (curve, rows), (colour, marker) in zip(curves.items(), _looks(len(curves)), strict=True):
         look = _POINT if all(row.method == "resolved" for row in rows) else {}
-        words = [_label(name, value) for name, value in zip(differing, curve, strict=True)]
+        words = [ABOUT[name].words(value) for name, value in zip(differing, curve, strict=True)]
         label = ", ".join(words) or _METHOD_NAMES[rows[0].method]
         handles.append(Line2D([], [], color=colour, marker=marker, label=label, **look))
     if len(laws) > 1:
@@ -267,8 +326,3 @@ def _legend(curves: dict[Curve, list[Result]], results: list[Result]) -> list[Li
     if len(methods) > 1:
         handles.append(Line2D([], [], color="0.3", marker="o", **_POINT, label=_METHOD_NAMES["resolved"]))
     return handles
-
-
-def _label(name: str, value: float | str | bool) -> str:
-    pattern, factor = _LABELS[name]
-    return pattern.format(value * factor if isinstance(value, float) else value)

@@ -1,20 +1,17 @@
-"""One impact of a dust-laden carrier on a wall: its parameters, their units and their allowed ranges."""
+"""One impact of a dust-laden carrier on a wall: what its parameters must be, and what follows from them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
-import numpy as np
-
+from .about import Derived, DerivedWord, converted, given, option
 from .errors import InvalidInput, shown
-
-METHODS = ("functions", "resolved")
-#: laws of tangential lift-off that know how a grain's contact rings
-RINGING = ("impulse", "integrate")
-TANGENTIAL = ("impulse", "estimate", "integrate", "frictionless", "off")
+from .materials import Material, find_material
+from .parameters import ABOUT, DISTRIBUTIONS, LONGEST_TIMESTEP, OWN, PARAMETER_TYPES, RINGING, Parameters
 
 #: share of a surface that random sequential placement of discs covers before it jams
 JAMMING = 0.547
@@ -22,36 +19,19 @@ JAMMING = 0.547
 #: the most grains a texture may have; beyond it a case would not fit in memory
 MOST_GRAINS = 10_000_000
 
-#: m/s
-FASTEST = 100.0
-
-LARGEST_SEED = 900_000_000
-
-#: below it products of parameters are too small for floating-point numbers
-SMALLEST = 1e-60
-
-
-def option(field: str) -> str:
-    """The command-line option of a parameter: ``grain_diameter`` -> ``--grain-diameter``."""
-    return "--" + field.replace("_", "-")
-
-
-#: the deck's carrier and wall of steel: kg/m3, and E* = E/(2 (1 - nu^2)) in Pa
-CARRIER_DENSITY = 7700.0
-CONTACT_MODULUS = 210e9 / (2 * (1 - 0.3**2))
-
-#: the deck's grains of calcium carbonate: kg/m3, and E* of grain and steel in Pa
-GRAIN_DENSITY = 2700.0
-GRAIN_MODULUS = 1 / ((1 - 0.3**2) / 75e9 + (1 - 0.3**2) / 210e9)
-
 #: the pull-off force per mass must be that of gravity at least, m/s2, and the surface energy at most this, J/m2
 GRAVITY, LARGEST_SURFACE_ENERGY = 9.81, 10.0
 
-#: a carrier of steel on steel has at this speed, m/s, the largest overlap that the default of the bare cap allows for
-BARE_SPEED = 20.0
+#: largest overlap over the carrier's radius of steel on steel at 20 m/s, which the default of the bare cap allows for
+BARE_OVERLAP = 0.025597
 
-#: in place of a bare cap that is not given: as wide as the diameters need it. No value that a user gives is this object
-BARE_FROM_GEOMETRY = float("nan")
+#: steps in a contact of Hertz: in general, at a restitution below `MUCH_DAMPED`, when damping is strongest at first
+#: touch, and where grains ring, or wall friction above `MUCH_FRICTION` shakes them, whatever the restitution
+CONTACT_STEPS, DAMPED_STEPS, RINGING_STEPS = 300, 1000, 3000
+MUCH_DAMPED, MUCH_FRICTION = 0.5, 0.1
+
+#: s, what a resolved run takes where none is given
+RESOLVED_TIMESTEP = 1e-9
 
 #: time steps that resolve an oscillation of a grain on its carrier
 LEAST_GRAIN_STEPS = 30
@@ -68,104 +48,110 @@ LONGEST_RESOLVED_CONTACT = 30e-6
 #: a contact of fewer steps is not resolved, one of more does not end within the deck's step limit
 LEAST_STEPS, MOST_STEPS = 50, 100_000
 
+#: volume fraction at which distributions are cut below and above, and the standard deviations it is from the median
+CUT, CUT_DEVIATIONS = 0.01, 2.3263478740408408
+
+#: the parts of an impact that have a material, and which of its numbers they need; a rigid wall needs no density
+PARTS = {
+    "carrier": ("density", "modulus", "poisson"),
+    "wall": ("modulus", "poisson"),
+    "grain": ("density", "modulus", "poisson"),
+}
+
 
 @dataclass(frozen=True, kw_only=True)
-class Impact:
-    """A carrier with a monolayer of dust hits a rigid wall. SI units, angles as stated.
+class Impact(Parameters):
+    """A carrier with a monolayer of dust hits a rigid wall: `Parameters` that have been checked.
 
-    The defaults are the reference case of the paper: a steel carrier of 1.5 mm with calcium carbonate grains of
-    20 um at a coverage of 0.2.
-
-    Attributes:
-        method: ``functions``, the detachment functions on a carrier without grains as atoms, or ``resolved``, every
-            grain an atom with adhesive contacts.
-        speed: impact speed, m/s, above 0 and at most 100.
-        angle: between velocity and wall plane, degrees, above 0 and at most 90 (straight).
-        restitution: coefficient of restitution e_pw of carrier and wall, above 0 and at most 1.
-        coverage: X0, summed cross-section of the grains over the carrier's surface, above 0; random
-            placement jams near 0.5, see `largest_coverage`.
-        bare: half-angle of the bare cap where the carrier meets the wall, rad, from 0 to below pi; by default so wide
-            that no grain reaches the wall before the carrier's largest overlap, see `bare_half_angle`.
-        grain_diameter: d_d, m, below the carrier's radius; adhesion must hold a grain that is lifted by gravity.
-        carrier_diameter: d_p, m, above 0 and at most 1.
-        hamaker: A_12 of grain and carrier, J, 1e-22 to 1e-17.
-        z0: separation at which the van der Waals force equals the pull-off force, m, 1e-11 to 1e-7.
-        spread: geometric standard deviation of the grains' pull-off forces, from 1 (all alike) to 100; hamaker and z0
-            give their median.
-        friction: mu_f between grain and carrier, from 0 to 10.
-        wall_friction: mu between carrier and wall, from 0 to 10.
-        grain_damping: damping ratio of a grain's contact at equilibrium overlap, from 0: below 1 grains ring, and more
-            of them leave; resolved runs and `RINGING` laws use it.
-        seed: of the random texture, 1 to 900000000.
-        tangential: lift-off on the far side: ``impulse`` (friction as a momentum, rolling as its limit), ``estimate``
-            (Eqs. 4-6), ``integrate`` (each grain's own sliding and rolling), ``frictionless`` (Eq. 4) or ``off``;
-            resolved runs do not use it.
-        rotation: whether the functions follow the carrier's spin; ``False`` is as in the paper. Resolved runs always
-            follow it.
-        timestep: s, above 0 and at most 1e-7; a resolved run also needs `LEAST_GRAIN_STEPS` in a
-            grain's oscillation.
+    A parameter that is not given and follows from others (``bare``, the numbers of the materials, the Hamaker
+    constants, the surface energy and the time step) is filled in, and follows again in `dataclasses.replace`.
 
     Raises:
         InvalidInput: a value outside its range; the message names the option.
     """
 
-    method: str = "functions"
-    speed: float
-    angle: float = 90.0
-    restitution: float = 0.7
-    coverage: float = 0.2
-    bare: float = BARE_FROM_GEOMETRY
-    grain_diameter: float = 20e-6
-    carrier_diameter: float = 1.5e-3
-    hamaker: float = 14.633e-20
-    z0: float = 0.4e-9
-    spread: float = 1.0
-    friction: float = 0.3
-    wall_friction: float = 0.05
-    grain_damping: float = 1.0
-    seed: int = 1
-    tangential: str = "impulse"
-    rotation: bool = True
-    timestep: float = 1e-9
-
     def __post_init__(self) -> None:
-        for field in fields(self):
-            # under `from __future__ import annotations` a field's type is its spelling
-            value = getattr(self, field.name)
-            if value is not BARE_FROM_GEOMETRY:
-                value = _convert(field.name, str(field.type), value)
-            object.__setattr__(self, field.name, value)
-
-        _one_of("method", self.method, METHODS)
-        _one_of("tangential", self.tangential, TANGENTIAL)
-
-        _above("speed", self.speed, 0.0, FASTEST, "m/s")
-        _above("angle", self.angle, 0.0, 90.0, "degrees")
-        _from("restitution", self.restitution, 0.01, 1.0)
-        _above("carrier_diameter", self.carrier_diameter, 0.0, 1.0, "m")
-        radius = self.carrier_diameter / 2
-        _above("grain_diameter", self.grain_diameter, 0.0, radius, "m, the carrier's radius", included=False)
-        if self.bare is BARE_FROM_GEOMETRY:
-            object.__setattr__(self, "bare", bare_half_angle(self.carrier_diameter, self.grain_diameter))
-        _from("bare", self.bare, 0.0, math.pi, "rad", included=False)
-        _above("coverage", self.coverage, 0.0, self.largest_coverage, "(random placement jams there)")
-        _from("hamaker", self.hamaker, 1e-22, 1e-17, "J")
-        _from("z0", self.z0, 1e-11, 1e-7, "m")
-        _from("spread", self.spread, 1.0, 100.0)
-        _from("friction", self.friction, 0.0, 10.0)
-        _from("wall_friction", self.wall_friction, 0.0, 10.0)
-        _from("grain_damping", self.grain_damping, 0.0, 100.0)
+        for name, about in ABOUT.items():
+            value = getattr(self, name)
+            if isinstance(value, Derived):
+                continue
+            value = converted(name, PARAMETER_TYPES[name], value)
+            about.check(name, value)
+            object.__setattr__(self, name, value)
+        self._fill_materials()
+        self._check_sizes()
+        self._fill_adhesion()
+        self._check_adhesion()
         if self.method == "functions" and self.tangential not in RINGING and self.grain_damping != Impact.grain_damping:
             raise InvalidInput(
                 f"--grain-damping: {self.grain_damping:g} does nothing with --tangential {self.tangential}, which does "
                 f"not know how a grain's contact rings; allowed: {Impact.grain_damping:g}, or --tangential "
                 + " or ".join(RINGING)
             )
-        _from("seed", self.seed, 1, LARGEST_SEED)
-        _above("timestep", self.timestep, 0.0, 1e-7, "s")
+        self._check_spin()
+        self._fill("timestep", default_timestep(self))
+        steps = self.hertz_contact_time / self.timestep
+        if not LEAST_STEPS <= steps <= MOST_STEPS:
+            raise InvalidInput(
+                f"--timestep: {self.timestep:g} s makes {steps:.3g} steps of a contact of "
+                f"{self.hertz_contact_time:.3g} s; allowed: {self.hertz_contact_time / MOST_STEPS:.3g} to "
+                f"{self.hertz_contact_time / LEAST_STEPS:.3g} s for this speed, angle and carrier"
+            )
+        if self.method == "resolved":
+            self._check_resolved()
 
+    def _fill(self, name: str, value: float) -> None:
+        """Set a number that nobody has given, if so."""
+        if isinstance(getattr(self, name), Derived):
+            object.__setattr__(self, name, Derived(value))
+
+    def _fill_materials(self) -> None:
+        for part, keys in PARTS.items():
+            numbers = [f"{part}_{key}" for key in keys]
+            name = getattr(self, part)
+            named = given(name)
+            material = find_material(name if named else getattr(Parameters, part), part)
+            own = not named and any(given(getattr(self, number)) for number in numbers)
+            object.__setattr__(self, part, material.name if named else OWN if own else getattr(Parameters, part))
+            for number, key in zip(numbers, keys, strict=True):
+                self._fill(number, getattr(material, key))
+
+    def material(self, part: str) -> Material:
+        """The material that a part is named after; its numbers may have been replaced.
+
+        Args:
+            part: ``carrier``, ``wall`` or ``grain``.
+        """
+        name = getattr(self, part)
+        return find_material(getattr(Parameters, part) if isinstance(name, DerivedWord) else name, part)
+
+    def _check_sizes(self) -> None:
+        """Distribution, diameters, bare cap and coverage, which limit each other."""
+        spread = self.distribution != "none"
+        if not spread and self.distribution_spread != Impact.distribution_spread:
+            raise InvalidInput(
+                f"--distribution-spread: {self.distribution_spread:g} does nothing without a distribution; allowed: "
+                f"with --distribution {' or '.join(DISTRIBUTIONS[1:])}"
+            )
+        if self.distribution == "lognormal" and self.distribution_spread <= 1:
+            raise InvalidInput(
+                f"--distribution: spread {self.distribution_spread:g} is out of range; allowed: above 1 for lognormal"
+            )
+        radius = self.carrier_diameter / 2
+        if not self.grain_diameter < radius or not self.coarsest < radius:
+            raise InvalidInput(
+                f"--grain-diameter: {self.grain_diameter:g} is out of range; allowed: above 0 and below "
+                f"{radius * self.grain_diameter / self.coarsest:g} m"
+                + (", where the coarsest grains have the carrier's radius" if spread else ", the carrier's radius")
+            )
+        self._fill("bare", bare_half_angle(self.carrier_diameter, self.coarsest))
+        if self.coverage > self.largest_coverage:
+            raise InvalidInput(
+                f"--coverage: {self.coverage:g} is out of range; allowed: above 0 and at most "
+                f"{self.largest_coverage:g} (random placement jams there)"
+            )
         if self.grains > MOST_GRAINS:
-            smallest = self.carrier_diameter * math.sqrt(4 * self.coverage / MOST_GRAINS)
+            smallest = self.grain_diameter * math.sqrt(self.grains / MOST_GRAINS)
             raise InvalidInput(
                 f"--grain-diameter: {self.grain_diameter:g} makes {self.grains:.3g} grains; allowed: "
                 f"{smallest:.3g} to {self.carrier_diameter:g} m at this coverage"
@@ -176,34 +162,93 @@ class Impact:
                 f"{(self.grain_diameter / self.carrier_diameter) ** 2 / 8:.3g} for these diameters"
             )
 
-        self._check_adhesion()
-        steps = self.hertz_contact_time / self.timestep
-        if not LEAST_STEPS <= steps <= MOST_STEPS:
+    def _fill_adhesion(self) -> None:
+        """Hamaker constants from materials or the surface energy, and the surface energy from them."""
+        if given(self.surface_energy):
+            made = 18 * math.pi * self.z0**2 * self.surface_energy
+            if given(self.hamaker):
+                raise InvalidInput(
+                    "--surface-energy: the adhesion is given twice; allowed: either --surface-energy, or --hamaker "
+                    "with --z0"
+                )
+            self._fill("hamaker", made)
+            if self.method == "resolved":
+                ABOUT["hamaker"].check("hamaker", self.hamaker)
+        else:
+            if not given(self.hamaker):
+                self._fill("hamaker", self._pair_hamaker("carrier"))
+            self._fill("surface_energy", self.hamaker / (18 * math.pi * self.z0**2))
+        self._fill("wall_hamaker", self._wall_hamaker())
+        own = self.material("grain").hamaker
+        if own is None and self.method == "resolved" and not given(self.grain_hamaker):
             raise InvalidInput(
-                f"--timestep: {self.timestep:g} s makes {steps:.3g} steps of a contact of "
-                f"{self.hertz_contact_time:.3g} s; allowed: {self.hertz_contact_time / MOST_STEPS:.3g} to "
-                f"{self.hertz_contact_time / LEAST_STEPS:.3g} s for this speed, angle and carrier diameter"
+                f"--grain-hamaker: the material {self.grain} has no Hamaker constant; allowed: "
+                f"{ABOUT['grain_hamaker'].allowed}"
             )
+        self._fill("grain_hamaker", own or 0.0)
 
-        if self.method == "resolved":
-            self._check_resolved()
+    def _wall_hamaker(self) -> float:
+        """Of grain and wall: as on the carrier if both are of one material, or if a surface energy is given."""
+        alike = self.material("wall").name == self.material("carrier").name or given(self.surface_energy)
+        lacking = self.material("wall").hamaker is None or self.material("grain").hamaker is None
+        if alike or (lacking and self.method == "functions"):
+            return self.hamaker
+        return float(self.wall_hamaker) if given(self.wall_hamaker) else self._pair_hamaker("wall")
+
+    def _pair_hamaker(self, part: str) -> float:
+        """A_12 = sqrt(A_11 A_22) of grain and carrier or wall, to five digits as the paper's, J."""
+        product = 1.0
+        for each in ("grain", part):
+            material = self.material(each)
+            if material.hamaker is None:
+                name = "hamaker" if part == "carrier" else "wall_hamaker"
+                raise InvalidInput(
+                    f"{option(name)}: the material {material.name} has no Hamaker constant; allowed: "
+                    f"{ABOUT[name].allowed}" + (", or --surface-energy" if part == "carrier" else "")
+                )
+            product *= material.hamaker
+        return float(f"{math.sqrt(product):.4e}")
 
     def _check_adhesion(self) -> None:
         """What makes no sense as adhesion shows that something was given in other units; the fix asks for the same."""
-        surface_energy = self.hamaker / (18 * math.pi * self.z0**2)
-        if surface_energy > LARGEST_SURFACE_ENERGY:
+        if self.surface_energy > LARGEST_SURFACE_ENERGY:
             least = math.sqrt(self.hamaker / (18 * math.pi * LARGEST_SURFACE_ENERGY))
             raise InvalidInput(
-                f"--z0: {self.z0:g} m makes a surface energy of {surface_energy:.3g} J/m2; allowed: {least:.3g} to "
-                "1e-07 m for this Hamaker constant"
+                f"--z0: {self.z0:g} m makes a surface energy of {self.surface_energy:.3g} J/m2; allowed: {least:.3g} "
+                "to 1e-07 m for this Hamaker constant"
             )
-        effective = 1 / (2 / self.grain_diameter + 2 / self.carrier_diameter)
-        mass = math.pi / 6 * self.grain_diameter**3 * GRAIN_DENSITY
-        held = 3 * math.pi * surface_energy * effective / mass
+        held = self.hold(self.coarsest)
         if held < GRAVITY:
             raise InvalidInput(
-                f"--grain-diameter: {self.grain_diameter:g} m makes grains that are held up to an acceleration of "
+                f"--grain-diameter: {self.coarsest:g} m makes grains that are held up to an acceleration of "
                 f"{held:.3g} m/s2; allowed: so small that this is at least {GRAVITY:g}"
+            )
+
+    def _pull_off_force(self, diameter: float) -> float:
+        """F_c = 3 pi gamma R_12 of a grain, the median of its spread, N."""
+        return 3 * math.pi * self.surface_energy / (2 / diameter + 2 / self.carrier_diameter)
+
+    def hold(self, diameter: float) -> float:
+        """F_c/m_d of a grain: the acceleration up to which it is held, the median of its spread, m/s2."""
+        return self._pull_off_force(diameter) / self._mass(diameter)
+
+    def _mass(self, diameter: float) -> float:
+        return math.pi / 6 * diameter**3 * self.grain_density
+
+    def _check_spin(self) -> None:
+        """A spin that throws grains off before the impact is not this impact's."""
+        if self.spin == 0:
+            return
+        if self.method == "functions" and not self.rotation:
+            raise InvalidInput(
+                f"--spin: {self.spin:g} rad/s does nothing where the spin is not followed; allowed: 0, or --rotation"
+            )
+        reach = (self.carrier_diameter + self.coarsest) / 2
+        fastest = math.sqrt(self.hold(self.coarsest) / reach)
+        if abs(self.spin) >= fastest:
+            raise InvalidInput(
+                f"--spin: {self.spin:g} rad/s throws grains off before the impact; allowed: above -{fastest:.4g} and "
+                f"below {fastest:.4g} rad/s for these grains"
             )
 
     def _check_resolved(self) -> None:
@@ -212,8 +257,14 @@ class Impact:
             raise InvalidInput(
                 "--rotation: false is for the functions, a resolved run always follows the spin; allowed: true"
             )
+        if self.distribution == "rrsb":
+            raise InvalidInput("--distribution: rrsb is for the functions; allowed in a resolved run: none, lognormal")
+        if self.distribution != "none" and self.spread > 1:
+            raise InvalidInput(
+                f"--spread: {self.spread:g} is not there in a resolved run with a distribution of sizes; allowed: 1"
+            )
         if self.grains > MOST_RESOLVED_GRAINS:
-            smallest = self.carrier_diameter * math.sqrt(4 * self.coverage / MOST_RESOLVED_GRAINS)
+            smallest = self.grain_diameter * math.sqrt(self.grains / MOST_RESOLVED_GRAINS)
             raise InvalidInput(
                 f"--grain-diameter: {self.grain_diameter:g} makes {self.grains} grains, in a resolved run at most "
                 f"{MOST_RESOLVED_GRAINS}; allowed: {smallest:.3g} to {self.carrier_diameter:g} m at this coverage"
@@ -237,40 +288,89 @@ class Impact:
             )
 
     @property
+    def contact_modulus(self) -> float:
+        """E* of carrier and wall, Pa."""
+        return contact_modulus(self)
+
+    @property
+    def adhesion_modulus(self) -> float:
+        """E* of grain and carrier, Pa."""
+        return combined_modulus(self.grain_modulus, self.grain_poisson, self.carrier_modulus, self.carrier_poisson)
+
+    @property
+    def finest(self) -> float:
+        """Diameter of the finest grains that there can be, m."""
+        return self.quantile(CUT)
+
+    @property
+    def coarsest(self) -> float:
+        """Diameter of the coarsest grains that there can be, m."""
+        return self.quantile(1 - CUT)
+
+    def quantile(self, fraction: float) -> float:
+        """Diameter below which there is this fraction of the volume, before the cuts at 0.01 and 0.99, m."""
+        if self.distribution == "none":
+            return self.grain_diameter
+        if self.distribution == "rrsb":
+            return float(self.grain_diameter * (-math.log1p(-fraction) / math.log(2)) ** (1 / self.distribution_spread))
+        deviations = math.copysign(CUT_DEVIATIONS, fraction - 0.5)
+        if fraction not in (CUT, 1 - CUT):
+            deviations = _normal_quantile(fraction)
+        return self.grain_diameter * math.exp(deviations * math.log(self.distribution_spread))
+
+    @property
     def grain_period(self) -> float:
         """Period of a grain that oscillates about its equilibrium overlap on the carrier, 2 pi sqrt(m_d/k_0), s.
 
         k_0 = 6/5 E* a_0 with a_0 = (A R_12^2/(2 z0^2 E*))^(1/3); with a spread that of the grains that hold hardest, at
-        three standard deviations, as the deck of resolved runs has them.
+        three standard deviations, with a distribution that of the finest, as the deck of resolved runs has them.
         """
         hardest = self.hamaker * self.spread**3
-        effective = 1 / (2 / self.grain_diameter + 2 / self.carrier_diameter)
-        contact_radius = (hardest * effective**2 / (2 * self.z0**2 * GRAIN_MODULUS)) ** (1 / 3)
-        mass = math.pi / 6 * self.grain_diameter**3 * GRAIN_DENSITY
-        return 2 * math.pi * math.sqrt(mass / (1.2 * GRAIN_MODULUS * contact_radius))
+        effective = 1 / (2 / self.finest + 2 / self.carrier_diameter)
+        modulus = self.adhesion_modulus
+        contact_radius = (hardest * effective**2 / (2 * self.z0**2 * modulus)) ** (1 / 3)
+        return 2 * math.pi * math.sqrt(self._mass(self.finest) / (1.2 * modulus * contact_radius))
 
     @property
     def hertz_contact_time(self) -> float:
-        """Contact time of the undamped impact (Hertz), s.
-
-        2.9432 overlap/speed with overlap = (15 m v^2/(16 E* sqrt(R)))^0.4 and the speed normal to the wall.
-        """
-        radius = self.carrier_diameter / 2
-        speed = self.speed * math.sin(math.radians(self.angle))
-        mass = 4 / 3 * math.pi * radius**3 * CARRIER_DENSITY
-        overlap = (15 * mass * speed**2 / (16 * CONTACT_MODULUS * math.sqrt(radius))) ** 0.4
-        return 2.9432 * float(overlap) / speed
+        """Contact time of the undamped impact (Hertz), s; see `hertz_contact_time`."""
+        return hertz_contact_time(self)
 
     @property
     def grains(self) -> int:
-        """Number of grains of the monolayer, N = 4 X0 (R_p/R_d)^2."""
-        return round(4 * self.coverage * (self.carrier_diameter / self.grain_diameter) ** 2)
+        """Number of grains of the monolayer, N = 4 X0 (R_p/R_d)^2; with a distribution about so many."""
+        equal = 4 * self.coverage * (self.carrier_diameter / self.grain_diameter) ** 2
+        if self.distribution != "none":
+            equal *= _grains_for_one(self.distribution, self.distribution_spread)
+        return round(equal)
 
     @property
     def largest_coverage(self) -> float:
         """Coverage at which random sequential placement jams, 0.547 ((R_p+R_d)/R_p)^2 (1 - (1 - cos bare)/2)."""
         shell = (1 + self.grain_diameter / self.carrier_diameter) ** 2
         return float(round(JAMMING * shell * (1 + math.cos(self.bare)) / 2, 4))
+
+    def deck_variables(self) -> dict[str, str | int | float]:
+        """The variables of the deck of the impact's method (``-var NAME VALUE``)."""
+        variables: dict[str, Any] = {
+            about.variables.get(self.method, name): getattr(self, name)
+            for name, about in ABOUT.items()
+            if about.deck and self.method in about.methods
+        }
+        if given(self.surface_energy):
+            del variables["hamaker"]
+            variables["surface_energy"] = self.surface_energy
+        if self.method == "resolved":
+            if self.distribution == "lognormal":
+                variables["sigma_g"] = self.distribution_spread
+            return variables
+        variables["rotation"] = "yes" if self.rotation else "no"
+        if self.tangential not in RINGING:
+            del variables["grain_damping"]
+        if self.distribution != "none":
+            variables["distribution"] = self.distribution
+            variables["distribution_spread"] = self.distribution_spread
+        return variables
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, Any]) -> Impact:
@@ -281,28 +381,106 @@ class Impact:
         """
         if not isinstance(values, Mapping):
             raise InvalidInput(f"{shown(values)} is not a mapping of names and values")
-        known = [field.name for field in fields(cls)]
         for name in values:
-            if name not in known:
-                raise InvalidInput(f"{name}: unknown parameter; allowed: {', '.join(known)}")
+            if name not in ABOUT:
+                raise InvalidInput(f"{name}: unknown parameter; allowed: {', '.join(ABOUT)}")
         if "speed" not in values:
-            raise InvalidInput("speed: missing; allowed: above 0 and at most 100 m/s")
+            raise InvalidInput(f"speed: missing; allowed: {ABOUT['speed'].allowed}")
         return cls(**values)
+
+
+def combined_modulus(modulus: float, poisson: float, other_modulus: float, other_poisson: float) -> float:
+    """E* of two materials, 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2, Pa."""
+    return 1 / ((1 - poisson**2) / modulus + (1 - other_poisson**2) / other_modulus)
+
+
+def contact_modulus(case: Parameters) -> float:
+    """E* of carrier and wall, Pa.
+
+    Args:
+        case: an impact or its result.
+    """
+    return combined_modulus(case.carrier_modulus, case.carrier_poisson, case.wall_modulus, case.wall_poisson)
+
+
+def hertz_contact_time(case: Parameters) -> float:
+    """Contact time of an undamped impact (Hertz), s.
+
+    2.9432 overlap/speed with overlap = (15 m v^2/(16 E* sqrt(R)))^0.4, E* of carrier and wall, and the speed normal to
+    the wall.
+
+    Args:
+        case: an impact or its result.
+    """
+    radius = case.carrier_diameter / 2
+    speed = case.speed * math.sin(math.radians(case.angle))
+    mass = 4 / 3 * math.pi * radius**3 * case.carrier_density
+    overlap = (15 * mass * speed**2 / (16 * contact_modulus(case) * math.sqrt(radius))) ** 0.4
+    return float(2.9432 * overlap / speed)
+
+
+def default_timestep(case: Parameters) -> float:
+    """The time step of an impact that is given none, s: a share of `hertz_contact_time`, to two digits.
+
+    1/300 of it; 1/1000 at a restitution below 0.5; 1/3000 at a wall friction above 0.1, and where a law in `RINGING` is
+    given a damping ratio below 1. At most 1e-7 s. In a resolved run 1e-9 s.
+
+    Args:
+        case: an impact or its result.
+    """
+    if case.method == "resolved":
+        return RESOLVED_TIMESTEP
+    rings = case.tangential in RINGING and case.grain_damping < 1
+    if rings or case.wall_friction > MUCH_FRICTION:
+        steps = RINGING_STEPS
+    else:
+        steps = CONTACT_STEPS if case.restitution >= MUCH_DAMPED else DAMPED_STEPS
+    return min(LONGEST_TIMESTEP, float(f"{hertz_contact_time(case) / steps:.2g}"))
+
+
+def is_timestep_chosen(cases: Iterable[Parameters]) -> bool:
+    """Whether nobody has asked for the time steps: each is `default_timestep`, whatever else differs.
+
+    Args:
+        cases: impacts or results.
+    """
+    return all(case.timestep == default_timestep(case) for case in cases)
+
+
+def _normal_quantile(fraction: float) -> float:
+    from statistics import NormalDist
+
+    return NormalDist().inv_cdf(fraction)
+
+
+@cache
+def _grains_for_one(distribution: str, spread: float) -> float:
+    """Grains of a distribution that cover as much as one of its median diameter, by means over the volume."""
+    number = squares = 0.0
+    intervals = 400
+    for k in range(intervals):
+        # equal steps of the logarithm, as fine grains count most
+        fraction = CUT * ((1 - CUT) / CUT) ** ((k + 0.5) / intervals)
+        if distribution == "rrsb":
+            size = (-math.log1p(-fraction) / math.log(2)) ** (1 / spread)
+        else:
+            size = spread ** _normal_quantile(fraction)
+        number += fraction / size**3
+        squares += fraction / size
+    return number / squares
 
 
 def bare_half_angle(carrier_diameter: float, grain_diameter: float) -> float:
     """Half-angle of a bare cap that keeps grains off the wall until the carrier's largest overlap, rad.
 
-    cos theta = (R_p - R_d - delta)/(R_p + R_d), rounded up to hundredths, with Hertz' delta of steel on steel at
-    `BARE_SPEED`, the same share of R_p for all sizes. 0.33 for 20 um on 1.5 mm; the fix and create_dust do the same.
+    cos theta = (R_p - R_d - delta)/(R_p + R_d), rounded up to hundredths, with Hertz' delta of steel on steel at 20
+    m/s, the same share of R_p for all sizes. 0.33 for 20 um on 1.5 mm; the fix and create_dust do the same.
 
     Args:
         carrier_diameter: d_p, m.
-        grain_diameter: d_d, m.
+        grain_diameter: d_d of the coarsest grains, m.
     """
-    mass_per_cube = 4 / 3 * math.pi * CARRIER_DENSITY
-    overlap = (15 * mass_per_cube * BARE_SPEED**2 / (16 * CONTACT_MODULUS)) ** 0.4
-    level = ((1 - overlap) * carrier_diameter - grain_diameter) / (carrier_diameter + grain_diameter)
+    level = ((1 - BARE_OVERLAP) * carrier_diameter - grain_diameter) / (carrier_diameter + grain_diameter)
     return math.ceil(100 * math.acos(level)) / 100
 
 
@@ -319,63 +497,3 @@ def as_impact(value: object, name: str) -> Impact:
     if not isinstance(value, Impact):
         raise InvalidInput(f"{name}: {shown(value)} is not an Impact")
     return value
-
-
-PARAMETERS = tuple(field.name for field in fields(Impact))
-PARAMETER_TYPES = {field.name: str(field.type) for field in fields(Impact)}
-
-
-def _convert(name: str, kind: str, value: Any) -> str | bool | int | float:
-    """The value as its field's type; numbers may come as any kind of number, numpy's included."""
-    if kind == "str":
-        if not isinstance(value, str):
-            raise InvalidInput(f"{option(name)}: {shown(value)} is not a word")
-        return str(value)
-    if kind == "bool":
-        if not isinstance(value, (bool, np.bool_)):
-            raise InvalidInput(f"{option(name)}: {shown(value)} is not true or false")
-        return bool(value)
-    number = finite_number(name, value)
-    if kind == "int":
-        if int(value) != number:
-            raise InvalidInput(f"{option(name)}: {number:g} is not a whole number")
-        return int(value)
-    return number
-
-
-def finite_number(name: str, value: Any) -> float:
-    """A number of any kind as a plain one.
-
-    Raises:
-        InvalidInput: it is none, or not finite.
-    """
-    listed = isinstance(value, np.ndarray) and value.ndim > 0
-    if listed or isinstance(value, (str, bytes, bytearray, bool, np.bool_)):
-        raise InvalidInput(f"{option(name)}: {shown(value)} is not a number")
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise InvalidInput(f"{option(name)}: {shown(value)} is not a finite number") from None
-    if not math.isfinite(number):
-        raise InvalidInput(f"{option(name)}: {number} is not a finite number")
-    return number
-
-
-def _one_of(name: str, value: str, allowed: tuple[str, ...]) -> None:
-    if value not in allowed:
-        raise InvalidInput(f"{option(name)}: unknown choice {shown(value)}; allowed: {', '.join(allowed)}")
-
-
-def _above(name: str, value: float, low: float, high: float, unit: str = "", *, included: bool = True) -> None:
-    if not (low < value <= high if included else low < value < high):
-        allowed = f"above {low:g} and {'at most' if included else 'below'} {high:g} {unit}".rstrip()
-        raise InvalidInput(f"{option(name)}: {value:g} is out of range; allowed: {allowed}")
-    if low == 0 and value < SMALLEST:
-        raise InvalidInput(f"{option(name)}: {value:g} is too small to compute with; allowed: at least {SMALLEST:g}")
-
-
-def _from(name: str, value: float, low: float, high: float, unit: str = "", *, included: bool = True) -> None:
-    if not (low <= value <= high if included else low <= value < high):
-        end = "to" if included else "to below"
-        allowed = f"{low:g} {end} {high:.9g} {unit}".rstrip()
-        raise InvalidInput(f"{option(name)}: {value:.10g} is out of range; allowed: {allowed}")

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -26,14 +27,14 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from PIL import Image
 
-from .columns import DetachRow, Mode
 from .errors import InvalidInput, MachineFault, shown
-from .files import as_path, read_text, replace_file, scratch_folder, writable_file
+from .files import as_path, replace_file, scratch_folder, writable_file
 from .frames import Frame, frame_sizes, read_frames
 from .impact import Impact, as_impact
 from .result import Result
 from .runner import Watch, run
 from .session import MPI_ROOM, lammps_file, lammps_session
+from .shares import read_fates
 from .texture import Texture, make_texture, read_texture
 
 #: width and height of the drawing of a carrier, and of each moment of an impact, pixels
@@ -104,8 +105,9 @@ def draw_texture(texture: Texture, path: str | Path) -> None:
     kinds = np.zeros(len(texture.diameters), dtype=int)
     with scratch_folder(IMAGE_ROOM) as folder:
         image = folder / "carrier.png"
-        _render(_carrier_scene(texture, kinds, [GRAIN]), image)
-        _compose(image, [], path)
+        scene = _carrier_scene(texture, kinds, [GRAIN])
+        _render(scene, image)
+        _compose(image, [], path, _Marks(scene, texture.carrier_diameter / 2))
 
 
 def draw_impact(impact: Impact, path: str | Path, watch: Watch | None = None) -> Result:
@@ -143,8 +145,10 @@ def _draw_fates(impact: Impact, path: Path, folder: Path, watch: Watch | None) -
         fates = read_fates(events, len(texture.diameters))
         if np.count_nonzero(fates) != round(result.dispersion_ratio * result.grains):
             raise InvalidInput(f"{events}: not all detachments are there")
-    _render(_carrier_scene(texture, fates, FATES), image)
-    _compose(image, _legend(np.bincount(fates, minlength=len(FATES))), path)
+    scene = _carrier_scene(texture, fates, FATES)
+    _render(scene, image)
+    marks = _Marks(scene, texture.carrier_diameter / 2, impact)
+    _compose(image, _legend(np.bincount(fates, minlength=len(FATES))), path, marks)
     return result
 
 
@@ -199,30 +203,6 @@ def _moments(sizes: dict[int, int], result: Result) -> list[int]:
     last = max((step for step in contact if sizes[step] == result.grains + 1), default=contact[-1])
     between = math.sqrt(max(contact[0], 1) * last)
     return [min(sizes), contact[0], min(contact, key=lambda step: abs(step - between)), last]
-
-
-def read_fates(path: str | Path, grains: int) -> NDArray[np.int64]:
-    """What became of each grain (0 attached, else the mode) from the events that LAMMPS' dump local wrote.
-
-    Raises:
-        InvalidInput: no such file, or it is cut, or an event of a grain that the texture does not have.
-    """
-    path = as_path(path, "events")
-    fates = np.zeros(grains, dtype=np.int64)
-    rows = False
-    for line in read_text(path).splitlines():
-        if line.startswith("ITEM:"):
-            rows = line.startswith("ITEM: ENTRIES")
-        elif rows:
-            words = line.split()
-            try:
-                grain, mode = int(float(words[DetachRow.GRAIN])), Mode(int(float(words[DetachRow.MODE])))
-            except (ValueError, IndexError, OverflowError):
-                raise InvalidInput(f"{path}: {shown(line)} is no event: the file is cut, or another one") from None
-            if not 1 <= grain <= grains:
-                raise InvalidInput(f"{path}: an event of grain {grain}, but the texture has {grains}")
-            fates[grain - 1] = mode
-    return fates
 
 
 def _carrier_scene(texture: Texture, kinds: NDArray[np.int64], palette: Sequence[Kind]) -> _Scene:
@@ -347,21 +327,79 @@ def _pixels(image: Path) -> NDArray[np.float64]:
         raise MachineFault(f"{image}: {error}: the disk may be full") from None
 
 
-def _compose(image: Path, handles: list[Line2D], path: Path) -> None:
-    """The drawing without its margins, above a legend if there is one."""
+@dataclass(frozen=True)
+class _Marks:
+    """What tells sizes and directions on a drawing of one carrier.
+
+    Attributes:
+        scene: what is drawn.
+        unit: length of the scene's unit, the carrier's radius, m.
+        impact: whose velocity is shown, or ``None``.
+    """
+
+    scene: _Scene
+    unit: float
+    impact: Impact | None = None
+
+    def draw(self, axes: Axes, height: int, width: int) -> None:
+        """A scale bar in the lower left corner, and an arrow along the velocity in the upper left one."""
+        radius = self.scene.size / self.scene.width
+        length = _round_length(0.28 * self.unit)
+        pixels = length / self.unit * radius
+        label = f"{length * 1e3:g} mm" if length >= 1e-4 else f"{length * 1e6:g} µm"
+        left, low = 0.02 * width, 0.985 * height
+        axes.plot([left, left + pixels], [low, low], color="black", linewidth=2.5, solid_capstyle="butt")
+        axes.text(left + pixels / 2, low - 0.015 * height, label, ha="center", va="bottom", fontsize=9)
+        if self.impact is None:
+            return
+        angle = math.radians(self.impact.angle)
+        along = _projected((math.cos(angle), 0.0, -math.sin(angle)), self.scene.view)
+        along *= 0.24 * radius / math.hypot(*along)
+        middle = np.array([0.02 * width + 0.11 * radius, 0.02 * height + 0.11 * radius])
+        arrow: dict[str, Any] = {"arrowstyle": "-|>,head_width=0.3,head_length=0.6", "linewidth": 2.0, "color": "black"}
+        arrow |= {"shrinkA": 0, "shrinkB": 0}
+        head, tail = middle + along / 2, middle - along / 2
+        axes.annotate("", (head[0], head[1]), (tail[0], tail[1]), arrowprops=arrow)
+        outline = [withStroke(linewidth=3, foreground="white")]
+        words = f"{self.impact.speed:g} m/s\n{self.impact.angle:g}°"
+        axes.text(left, 0.03 * height + 0.22 * radius, words, ha="left", va="top", fontsize=9, path_effects=outline)
+
+
+def _round_length(most: float) -> float:
+    """The longest of 1, 2 or 5 times a power of ten that is no longer, m."""
+    power = 10.0 ** math.floor(math.log10(most))
+    return max(part * power for part in (1, 2, 5) if part * power <= most)
+
+
+def _projected(direction: tuple[float, float, float], view: tuple[float, float]) -> NDArray[np.float64]:
+    """A direction as seen by a camera (2,), to the right and down; z is up."""
+    polar, azimuth = map(math.radians, view)
+    camera = np.array([math.sin(polar) * math.cos(azimuth), math.sin(polar) * math.sin(azimuth), math.cos(polar)])
+    right = np.array([-math.sin(azimuth), math.cos(azimuth), 0.0])
+    up = np.cross(camera, right)
+    return np.array([right @ direction, -(up @ direction)])
+
+
+#: of PNG files; the drawings are as wide as that makes them
+DPI = 200
+
+
+def _compose(image: Path, handles: list[Line2D], path: Path, marks: _Marks) -> None:
+    """The drawing without its margins, with its marks, above a legend if there is one."""
     pixels = _pixels(image)
     pixels = pixels[_drawn(pixels)]
-    height, width = pixels.shape[0] / SIZE * 6, pixels.shape[1] / SIZE * 6
-    margin, foot = 0.1, 0.27 * len(handles) + 0.1 * bool(handles)
+    height, width = pixels.shape[0] / DPI, pixels.shape[1] / DPI
+    margin, foot = 0.1, 0.22 * len(handles) + 0.1 * bool(handles)
     total = (width + 2 * margin, height + 2 * margin + foot)
     figure = plt.figure(figsize=total)
     axes = figure.add_axes((margin / total[0], (margin + foot) / total[1], width / total[0], height / total[1]))
     axes.imshow(pixels, interpolation="lanczos")
     axes.axis("off")
+    marks.draw(axes, *pixels.shape[:2])
     if handles:
-        figure.legend(handles=handles, loc="lower center", frameon=False, fontsize=11, handletextpad=0.3)
+        figure.legend(handles=handles, loc="lower center", frameon=False, fontsize=9, handletextpad=0.3)
     with replace_file(path) as part:
-        figure.savefig(part, format="png", dpi=SIZE / 6)
+        figure.savefig(part, format="png", dpi=DPI)
     plt.close(figure)
 
 
@@ -386,9 +424,10 @@ def _compose_moments(frames: list[Frame], images: list[Path], result: Result, pa
         axes.axis("off")
         if index == 0:
             _draw_velocity(axes, frame, result)
+            _draw_length(axes, frame, rows, columns)
         tied = int(np.count_nonzero(frame.tied))
         words = (
-            f"{'abcd'[index]}) {frame.step * result.timestep * 1e6:.1f} µs: {tied} tied, "
+            f"({'abcd'[index]}) {frame.step * result.timestep * 1e6:.1f} µs: {tied} tied, "
             f"{result.grains - tied} detached ({1 - tied / result.grains:.1%})"
         )
         place = ((left + _PANEL / 2) / total[0], (bottom - 0.06) / total[1])
@@ -398,6 +437,17 @@ def _compose_moments(frames: list[Frame], images: list[Path], result: Result, pa
     with replace_file(path) as part:
         _save_small(figure, part, MOMENT_SIZE / _PANEL)
     plt.close(figure)
+
+
+def _draw_length(axes: Axes, frame: Frame, rows: slice, columns: slice) -> None:
+    """A scale bar in the upper left corner, where no grain flies before the impact."""
+    scene = _side_scene(frame)
+    length = _round_length(0.6 * frame.carrier_radius)
+    pixels = length / frame.carrier_radius * scene.size / scene.width
+    left, top = columns.start + 0.03 * scene.size, rows.start + 0.05 * scene.size
+    axes.plot([left, left + pixels], [top, top], color="black", linewidth=2.5, solid_capstyle="butt")
+    label = f"{length * 1e3:g} mm" if length >= 1e-4 else f"{length * 1e6:g} µm"
+    axes.text(left + pixels / 2, top - 0.01 * scene.size, label, ha="center", va="bottom", fontsize=9)
 
 
 def _draw_velocity(axes: Axes, frame: Frame, result: Result) -> None:

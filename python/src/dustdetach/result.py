@@ -8,73 +8,86 @@ import math
 import os
 import sys
 from collections.abc import Iterable
-from dataclasses import MISSING, asdict, dataclass, fields
+from dataclasses import dataclass, field, fields
+from html import escape
 from io import StringIO
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, cast
 
+from .about import about, described
 from .errors import InvalidInput, shown
 from .files import as_path, read_text, replace_file
+from .impact import Impact
+from .parameters import SPREAD, Parameters
 
 
 @dataclass(frozen=True, kw_only=True)
-class Result:
-    """One finished impact. SI units; the parameters are those of `Impact`, the rest as follows.
+class Result(Parameters):
+    """One finished impact: its parameters, then what came of it. SI units."""
 
-    Attributes:
-        grains: grains on the carrier before the impact.
-        dispersion_ratio: detached over initial grain mass.
-        north: share of it from the side away from the wall, n.(v_rebound - v_contact) > 0.
-        south: share of it from the side of the impact; north + south = dispersion_ratio.
-        normal: share of it by lift-off normal to the surface (Eq. 2), ``None`` in a resolved run.
-        tangential_mode: share of it by tangential lift-off (Eqs. 3-6), ``None`` in a resolved run.
-        contact_time: from the first step with a contact force to the first without, s.
-        peak_acceleration: largest magnitude of the carrier's acceleration, m/s2.
-        restitution_realised: normal speed after over normal speed before.
-        steps: time steps taken.
-        end: why the run stopped: ``rebound`` or ``step limit``; in a resolved run ``settled`` (no contact with the
-            carrier has changed for 40 us) or ``limit``.
-        loop_seconds: LAMMPS' loop time, s.
-        wall_seconds: the whole impact with set-up, s.
-        lammps_version: as LAMMPS counts it, yyyymmdd.
-    """
+    grains: int = field(metadata=about("grains on the carrier before the impact"))
+    dispersion_ratio: float = field(
+        metadata=about("dispersion ratio (detached over initial mass of the grains)", least=0.0, most=1.0)
+    )
+    north: float = field(
+        metadata=about(
+            "share of the north, away from the wall: n.(v_rebound - v_contact) > 0 (of the initial mass)",
+            least=0.0,
+            most=1.0,
+        )
+    )
+    south: float = field(
+        metadata=about(
+            "share of the south, the side of the impact (of the initial mass); with north it makes the ratio",
+            least=0.0,
+            most=1.0,
+        )
+    )
+    normal: float | None = field(
+        metadata=about("share by lift-off normal to the surface (Eq. 2); empty in a resolved run", least=0.0, most=1.0)
+    )
+    tangential_mode: float | None = field(
+        metadata=about("share by tangential lift-off (Eqs. 3-6); empty in a resolved run", least=0.0, most=1.0)
+    )
+    contact_time: float = field(
+        metadata=about(
+            "contact time (from the first step with a contact force to the first without)",
+            unit="s",
+            figure_unit="µs",
+            factor=1e6,
+        )
+    )
+    peak_acceleration: float = field(metadata=about("peak acceleration of the carrier", unit="m/s2"))
+    restitution_realised: float = field(metadata=about("restitution realised (normal speed after over before)"))
+    steps: int = field(metadata=about("time steps taken"))
+    end: str = field(
+        metadata=about(
+            "why the run stopped: rebound or step limit; in a resolved run settled (no contact with the carrier has "
+            "changed for 40 us) or limit"
+        )
+    )
+    loop_seconds: float = field(metadata=about("LAMMPS' loop time", unit="s"))
+    wall_seconds: float = field(metadata=about("time of the whole impact with set-up", unit="s"))
+    lammps_version: int = field(metadata=about("version of LAMMPS (yyyymmdd)"))
 
-    method: str
-    speed: float
-    angle: float
-    restitution: float
-    coverage: float
-    bare: float
-    grain_diameter: float
-    carrier_diameter: float
-    hamaker: float
-    z0: float
-    spread: float = 1.0
-    friction: float
-    wall_friction: float
-    grain_damping: float
-    seed: int
-    tangential: str
-    rotation: bool
-    grains: int
-    dispersion_ratio: float
-    north: float
-    south: float
-    normal: float | None
-    tangential_mode: float | None
-    contact_time: float
-    peak_acceleration: float
-    restitution_realised: float
-    timestep: float
-    steps: int
-    end: str
-    loop_seconds: float
-    wall_seconds: float
-    lammps_version: int
+    def _repr_html_(self) -> str:
+        """For notebooks: what matters most."""
+        rows = [line.split(maxsplit=1) for line in described_materials(self)]
+        rows.insert(0, ["impact", f"{self.speed:g} m/s, {self.angle:g} degrees, restitution {self.restitution:g}"])
+        rows.append(
+            ["dispersion ratio", f"{self.dispersion_ratio:.4f}: south {self.south:.4f}, north {self.north:.4f}"]
+        )
+        cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in rows)
+        return f"<table>{cells}</table>"
+
+    def columns(self) -> dict[str, str | bool | int | float | None]:
+        """Every column by name, in order."""
+        return {key: getattr(self, key) for key in KEYS}
 
     def to_json(self) -> str:
         """One JSON object, keys in the order of the fields."""
-        return json.dumps(asdict(self))
+        return json.dumps(self.columns())
 
     @classmethod
     def from_json(cls, text: str) -> Result:
@@ -89,21 +102,39 @@ class Result:
             raise InvalidInput("not a result: cut, or no JSON") from None
         if not isinstance(values, dict):
             raise InvalidInput(f"not a result: {shown(values)} is not an object")
-        checked: dict[str, Any] = {key: _value(key, values) for key in KEYS if key in values or key not in _DEFAULTS}
-        return cls(**checked)
+        return _filled({key: _value(key, values) for key in KEYS if key in values or key not in _NEWER})
 
 
-KEYS = tuple(field.name for field in fields(Result))
-_TYPES = {field.name: str(field.type) for field in fields(Result)}
-#: of parameters that are newer than some records
-_DEFAULTS = {field.name: field.default for field in fields(Result) if field.default is not MISSING}
+#: what is known of each column
+COLUMNS = described(Result)
+#: in the order of the table: the time step beside the steps, and what is newer at the end
+_PLACES = list(COLUMNS)
+KEYS = tuple(
+    sorted(
+        COLUMNS,
+        key=lambda key: (max(0, COLUMNS[key].since - SPREAD), _PLACES.index("steps" if key == "timestep" else key)),
+    )
+)
+TYPES = {of.name: str(of.type) for of in fields(Result)}
+#: of parameters that are newer than some records: they have the reference case's
+_NEWER = frozenset(name for name, known in COLUMNS.items() if known.since)
+
+
+def _filled(values: dict[str, Any]) -> Result:
+    """A record with what it lacks, as it was when that was no parameter yet."""
+    if not values.keys() >= _NEWER:
+        reference = Impact(speed=1.0).values()
+        made = values["hamaker"] / (18 * math.pi * values["z0"] ** 2)
+        older = {**reference, "wall_hamaker": values["hamaker"], "surface_energy": made}
+        values = {**{name: older[name] for name in _NEWER}, **values}
+    return Result(**values)
 
 
 def _value(key: str, values: dict[str, Any]) -> str | bool | int | float | None:
     """The value of a key, if it is of the type that `Result` asks for."""
     if key not in values:
         raise InvalidInput(f"not a result: no key {key}")
-    value, kind = values[key], _TYPES[key]
+    value, kind = values[key], TYPES[key]
     if value is None and kind.endswith("| None"):
         return None
     if kind.startswith("float") and type(value) in (int, float) and abs(value) <= sys.float_info.max:
@@ -113,25 +144,28 @@ def _value(key: str, values: dict[str, Any]) -> str | bool | int | float | None:
     raise InvalidInput(f"not a result: {key}: {shown(value)} is not of the type {kind}")
 
 
-def read_result(path: Path) -> Result:
-    """Read what `Result.to_json` wrote into a file.
-
-    Raises:
-        InvalidInput: no such file, or it is cut or another one; the message names it.
-    """
-    text = read_text(path)
-    try:
-        return Result.from_json(text)
-    except InvalidInput as error:
-        raise InvalidInput(f"{path}: {error}") from None
+def described_materials(case: Parameters) -> list[str]:
+    """What carrier, wall and grains are made of and how they adhere, a line each."""
+    sizes = ""
+    if case.distribution != "none":
+        sizes = f" ({case.distribution}, {case.distribution_spread:g})"
+    return [
+        f"carrier            {case.carrier} of {case.carrier_diameter * 1e3:g} mm: {case.carrier_density:g} kg/m3, "
+        f"{case.carrier_modulus / 1e9:.4g} GPa, Poisson {case.carrier_poisson:g}",
+        f"wall               {case.wall}: {case.wall_modulus / 1e9:.4g} GPa, Poisson {case.wall_poisson:g}",
+        f"grains             {case.grain} of {case.grain_diameter * 1e6:g} um{sizes}: {case.grain_density:g} kg/m3, "
+        f"{case.grain_modulus / 1e9:.4g} GPa, Poisson {case.grain_poisson:g}",
+        f"adhesion           surface energy {case.surface_energy * 1e3:.4g} mJ/m2 (A_12 {case.hamaker:.5g} J, "
+        f"z0 {case.z0 * 1e9:g} nm), spread {case.spread:g}",
+    ]
 
 
 def write_csv(path: Path, results: Iterable[Result]) -> None:
     """Write one row a case, complete or not at all; an absent value is an empty field."""
     with replace_file(path) as part, open(part, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, KEYS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(asdict(result) for result in results)
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(KEYS)
+        writer.writerows(map(attrgetter(*KEYS), results))
 
 
 def read_csv(path: str | Path) -> list[Result]:
@@ -145,7 +179,7 @@ def read_csv(path: str | Path) -> list[Result]:
         raise InvalidInput(f"{path}: no such file; run 'dustdetach sweep' into this folder first")
     reader = csv.DictReader(StringIO(read_text(path), newline=""))
     try:
-        missing = [key for key in KEYS if key not in (*(reader.fieldnames or ()), *_DEFAULTS)]
+        missing = [key for key in KEYS if key not in (*(reader.fieldnames or ()), *_NEWER)]
         if missing:
             raise InvalidInput(f"{path}: no column {missing[0]}")
         return [_row(path, reader.line_num, row) for row in reader]
@@ -158,13 +192,13 @@ def _row(path: Path, line: int, row: dict[Any, Any]) -> Result:
         raise InvalidInput(f"{path}: line {line}: more fields than columns")
     values = {}
     for key in KEYS:
-        if key in _DEFAULTS and key not in row:
+        if key in _NEWER and key not in row:
             continue
         try:
-            values[key] = _field(_TYPES[key], row[key])
+            values[key] = _field(TYPES[key], row[key])
         except ValueError as error:
             raise InvalidInput(f"{path}: line {line}: {key}: {error}") from None
-    return Result(**values)
+    return _filled(values)
 
 
 def _field(kind: str, text: str | None) -> Any:

@@ -1,45 +1,28 @@
-"""Runs one impact: the deck of its method on a LAMMPS instance in this process."""
+"""Runs impacts: the deck of their method on a LAMMPS instance in this process."""
 
 from __future__ import annotations
 
 import math
+import re
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict
+from dataclasses import dataclass
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 from .columns import DetachAtom, DetachVector
 from .errors import InvalidInput, MachineFault
-from .files import as_path, replace_file, writable_file
-from .impact import RINGING, Impact, as_impact
+from .files import as_path, read_text, replace_file, scratch_folder, writable_file
+from .impact import Impact, as_impact
 from .places import find_deck, lammps_module
 from .result import Result
 from .session import lammps_file, lammps_session
 
 #: the deck of each method
 DECKS = {"functions": "in.impact", "resolved": "in.impact.resolved"}
-
-# parameters that the decks take as variables of the same name
-_VARIABLES = (
-    "speed",
-    "angle",
-    "restitution",
-    "coverage",
-    "bare",
-    "grain_diameter",
-    "carrier_diameter",
-    "hamaker",
-    "z0",
-    "spread",
-    "friction",
-    "wall_friction",
-    "seed",
-    "timestep",
-)
-_VARIABLES_OF = {"functions": (*_VARIABLES, "tangential"), "resolved": (*_VARIABLES, "grain_damping")}
 
 Watch = Callable[[float], None]
 
@@ -50,6 +33,7 @@ def run(
     comm: Any = None,
     events: str | Path | None = None,
     frames: str | Path | None = None,
+    motion: str | Path | None = None,
     watch: Watch | None = None,
 ) -> Result:
     """Run one impact with the method it names.
@@ -59,46 +43,196 @@ def run(
         comm: an mpi4py communicator for LAMMPS; all ranks of the process without one.
         events: a file for every detachment, as LAMMPS' dump local writes it (method ``functions``); see `pictures`.
         frames: a file for all grains every half microsecond, as LAMMPS' dump custom writes it (method ``resolved``).
+        motion: a file for the carrier's motion, a line a step, as LAMMPS' dump custom writes it (method
+            ``functions``); see `response`.
         watch: called about once a second, from another thread, with the time that has been simulated, s.
 
     Returns:
         Dispersion ratio with its shares, and the collision's time, peak acceleration and restitution.
 
     Raises:
-        InvalidInput: ``events`` or ``frames`` that the method does not write or that can be no file, or what only
-            LAMMPS can judge, for instance a coverage that cannot be placed.
+        InvalidInput: ``events``, ``frames`` or ``motion`` that the method does not write or that can be no file, or
+            what only LAMMPS can judge, for instance a coverage that cannot be placed.
         MachineFault: the disk is full, or fails.
         LammpsMissing: LAMMPS, the plugin or the deck is not there.
         LammpsBusy: another thread of this process is at it: LAMMPS runs one at a time in a process.
     """
     impact = as_impact(impact, "run")
-    if events is not None and impact.method != "functions":
-        raise InvalidInput("events: a resolved run has none; allowed: with method functions")
+    for name, file in (("events", events), ("motion", motion)):
+        if file is not None and impact.method != "functions":
+            raise InvalidInput(f"{name}: a resolved run has none; allowed: with method functions")
     if frames is not None and impact.method != "resolved":
         raise InvalidInput("frames: without grains as atoms there are none; allowed: with method resolved")
-    started = time.perf_counter()
-    parameters = asdict(impact)
-    variables = {name: parameters[name] for name in _VARIABLES_OF[impact.method]}
-    if impact.method == "functions":
-        variables["rotation"] = "yes" if impact.rotation else "no"
-        if impact.tangential in RINGING:
-            variables["grain_damping"] = impact.grain_damping
-    deck = find_deck(DECKS[impact.method])
-    with ExitStack() as stack:
-        for name, variable, file in (("events", "events", events), ("frames", "dump", frames)):
-            if file is not None:
-                variables[variable] = stack.enter_context(_dump(file, name))
-        lmp = stack.enter_context(lammps_session(variables, comm))
-        with _watched(lmp, watch):
-            lmp.file(str(deck))
-        read = _read_resolved if impact.method == "resolved" else _read_functions
-        return Result(
-            **parameters,
-            **read(lmp, impact),
-            steps=int(lmp.extract_global("ntimestep")),
-            wall_seconds=time.perf_counter() - started,
-            lammps_version=lmp.version(),
-        )
+    with Bench(comm) as bench:
+        return bench.run(impact, events=events, frames=frames, motion=motion, watch=watch)
+
+
+class Bench:
+    """One impact after another, in one LAMMPS instance where that is possible; a context that closes it at the end.
+
+    The deck of method ``functions`` has a line ``label impact``: what stands above it is run once, for a carrier, and
+    what stands below for each impact. An impact gives the same numbers wherever it comes in the row.
+
+    Args:
+        comm: an mpi4py communicator for LAMMPS; all ranks of the process without one.
+    """
+
+    def __init__(self, comm: Any = None) -> None:
+        self._comm = comm
+        self._opened = ExitStack()
+        self._at_hand: _AtHand | None = None
+
+    def __enter__(self) -> Bench:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close LAMMPS if it is open: another one may be opened then."""
+        self._at_hand = None
+        self._opened.close()
+
+    def run(
+        self,
+        impact: Impact,
+        *,
+        events: str | Path | None = None,
+        frames: str | Path | None = None,
+        motion: str | Path | None = None,
+        watch: Watch | None = None,
+    ) -> Result:
+        """Run one impact; the arguments are those of `dustdetach.run`."""
+        started = time.perf_counter()
+        sizes = impact.method == "functions" and impact.distribution != "none"
+        with ExitStack() as outer:
+            extra = {}
+            if sizes:
+                # shares by mass need arrays, and numpy takes longer to import than all the rest
+                from .shares import mass_shares
+                from .texture import BYTES_A_GRAIN
+
+                scratch = outer.enter_context(scratch_folder(2 * BYTES_A_GRAIN * impact.grains))
+                events = events or scratch / "events"
+                extra["write"] = lammps_file(scratch / "texture", "TMPDIR")
+            with ExitStack() as stack:
+                for name, variable, file in (
+                    ("events", "events", events),
+                    ("frames", "dump", frames),
+                    ("motion", "motion", motion),
+                ):
+                    if file is not None:
+                        extra[variable] = stack.enter_context(_dump(file, name))
+                found, velocity = self._run(impact, extra, watch)
+            if sizes and events is not None:
+                change = [after - before for after, before in zip(velocity, _velocity(impact), strict=True)]
+                found |= mass_shares(as_path(events, "events"), change, scratch / "texture")
+        return Result(**impact.values(), **found, wall_seconds=time.perf_counter() - started)  # type: ignore[arg-type]
+
+    def _run(
+        self, impact: Impact, extra: Mapping[str, str], watch: Watch | None
+    ) -> tuple[dict[str, Any], tuple[float, ...]]:
+        """What comes of an impact whose deck has these variables, too; by functions also the last velocity, m/s."""
+        variables = {**_variables(impact), **extra}
+        try:
+            lmp, commands = self._prepare(impact.method, variables)
+            with _watched(lmp, watch):
+                lmp.commands_string(commands)
+            found = _read_resolved(lmp) if impact.method == "resolved" else _read_functions(lmp, impact)
+            found |= {
+                "loop_seconds": float(lmp.extract_variable("loop_seconds")),
+                "steps": int(lmp.extract_global("ntimestep")),
+                "lammps_version": lmp.version(),
+            }
+            velocity = tuple(lmp.extract_atom("v")[0][:3]) if impact.method == "functions" else ()
+        except BaseException as error:
+            # what LAMMPS has refused leaves it in any state; its message becomes one of ours on the way
+            self._fail(error)
+            raise
+        if impact.method == "resolved" or extra:
+            # files are complete when LAMMPS is closed
+            self.close()
+        return found, velocity
+
+    def _prepare(self, method: str, variables: dict[str, str]) -> tuple[Any, str]:
+        """LAMMPS with the carrier of these variables, and the commands of the impact."""
+        at_hand = self._at_hand
+        if at_hand is not None and at_hand.deck is _deck(method) and at_hand.serves(variables):
+            return at_hand.lmp, at_hand.change_to(variables) + at_hand.deck.impact
+        self.close()
+        deck = _deck(method)
+        lmp = self._opened.enter_context(lammps_session(variables, self._comm))
+        lmp.commands_string(deck.setup)
+        self._at_hand = _AtHand(lmp, deck, variables)
+        return lmp, deck.impact
+
+    def _fail(self, error: BaseException) -> None:
+        """Close LAMMPS as the error does that left it; what LAMMPS has said becomes an error of ours on the way."""
+        self._at_hand = None
+        self._opened.__exit__(type(error), error, error.__traceback__)
+
+
+@dataclass(frozen=True)
+class _Deck:
+    """A deck in two parts: what is run once for a carrier, and what is run for each impact."""
+
+    setup: str
+    impact: str
+
+    @cached_property
+    def asked(self) -> frozenset[str]:
+        """The variables whose values the first part takes."""
+        code = re.sub(r"#.*", "", self.setup)
+        return frozenset(re.findall(r"(?:\$\{|\bv_|variable,)(\w+)", code))
+
+
+@cache
+def _deck(method: str) -> _Deck:
+    deck = read_text(find_deck(DECKS[method]))
+    label = re.search(r"^label\s+impact\b.*\n", deck, re.MULTILINE)
+    return _Deck(deck[: label.start()], _bare(deck[label.end() :])) if label else _Deck("", deck)
+
+
+def _bare(commands: str) -> str:
+    """Commands without lines of comments, each on one line: LAMMPS takes them apart again for each impact."""
+    lines = re.sub(r"&[ \t]*\n\s*", "", commands).splitlines()
+    return "".join(line + "\n" for line in lines if line.strip() and not line.startswith("#"))
+
+
+@dataclass
+class _AtHand:
+    """An open LAMMPS instance that has run an impact, and the variables of that impact."""
+
+    lmp: Any
+    deck: _Deck
+    variables: dict[str, str]
+
+    def serves(self, variables: dict[str, str]) -> bool:
+        """Whether an impact with these variables may follow in this instance."""
+        changed = dict(variables.items() ^ self.variables.items())
+        words = all(re.fullmatch(r"[\w.+-]+", value) for value in changed.values())
+        return self.deck.setup != "" and words and self.deck.asked.isdisjoint(changed)
+
+    def change_to(self, variables: dict[str, str]) -> str:
+        """The commands that give the variables their new values."""
+        changed = dict(variables.items() ^ self.variables.items())
+        # also those that have not been given yet: the deck has a value of its own for some, and what is there stays
+        gone = [f"variable {name} delete\n" for name in changed]
+        new = [f"variable {name} index {variables[name]}\n" for name in changed if name in variables]
+        self.variables = variables
+        return "".join(gone + new)
+
+
+def _velocity(impact: Impact) -> tuple[float, float, float]:
+    """Of the carrier before the impact, m/s."""
+    angle = math.radians(impact.angle)
+    return impact.speed * math.cos(angle), 0.0, -impact.speed * math.sin(angle)
+
+
+def _variables(impact: Impact) -> dict[str, str]:
+    """The variables of the method's deck, as text that loses no digit."""
+    values = impact.deck_variables()
+    return {name: repr(value) if isinstance(value, float) else str(value) for name, value in values.items()}
 
 
 @contextmanager
@@ -151,17 +285,16 @@ def _read_functions(lmp: Any, impact: Impact) -> dict[str, Any]:
         "tangential_mode": fix.total(DetachVector.TANGENTIAL) / grains,
         "contact_time": fix.of_carrier(DetachAtom.CONTACT_TIME),
         "peak_acceleration": fix.of_carrier(DetachAtom.PEAK_ACCELERATION),
-        "restitution_realised": float(lmp.numpy.extract_atom("v")[0, 2])
+        "restitution_realised": float(lmp.extract_atom("v")[0][2])
         / (impact.speed * math.sin(math.radians(impact.angle))),
         "end": "rebound" if fix.total(DetachVector.COLLISIONS) > 0 else "step limit",
-        "loop_seconds": float((lmp.last_thermo() or {}).get("CPU", 0.0)),
     }
 
 
-def _read_resolved(lmp: Any, _: Impact) -> dict[str, Any]:
+def _read_resolved(lmp: Any) -> dict[str, Any]:
     names = ("dispersion_ratio", "north", "south", "contact_time", "peak_acceleration", "restitution_realised")
     return {
-        **{name: float(lmp.extract_variable(name)) for name in (*names, "loop_seconds")},
+        **{name: float(lmp.extract_variable(name)) for name in names},
         "grains": int(lmp.extract_variable("grains")),
         "normal": None,
         "tangential_mode": None,
@@ -183,8 +316,8 @@ class _FixOutput:
         return float(self._global(self._constants.LMP_TYPE_VECTOR, nrow=column))
 
     def of_carrier(self, column: DetachAtom) -> float:
-        table = self._lmp.numpy.extract_fix("dust", self._constants.LMP_STYLE_ATOM, self._constants.LMP_TYPE_ARRAY)
-        return float(table[0, column])
+        table = self._lmp.extract_fix("dust", self._constants.LMP_STYLE_ATOM, self._constants.LMP_TYPE_ARRAY)
+        return float(table[0][column])
 
     def _global(self, kind: int, **place: int) -> Any:
         return self._lmp.extract_fix("dust", self._constants.LMP_STYLE_GLOBAL, kind, **place)

@@ -104,6 +104,8 @@ def lammps_file(path: Path, name: str) -> str:
 @cache
 def _lammps_class() -> type:
     _check_room()
+    # a process that no mpirun has started needs no daemon of Open MPI beside it
+    os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
 
     class Lammps(lammps_module().lammps):  # type: ignore[misc]
         """LAMMPS' class with whole error messages: 4Feb2025 cuts them after 99 characters."""

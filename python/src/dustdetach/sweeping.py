@@ -1,46 +1,47 @@
-"""Runs many impacts into a folder: one folder a case, and a table of all of them.
+"""Runs many impacts into a folder: batches of results, and a table of all of them.
 
-A case is complete when its ``result.json`` exists; the file is written under another name and then renamed, so that
-a sweep which was killed, even by ``kill -9``, picks up where it stopped and loses no more than the cases in work. A
-case's folder is named by its parameters and by what computes it (version of this package, contents of LAMMPS' library,
-the plugin and the deck): results of another build are never taken for one's own.
+A process runs one impact after another (`runner.Bench`) and keeps what it has after `BATCH_SECONDS`, or after so many
+cases, in one file that is written under another name and then renamed (`batches`): a sweep which was killed, even by
+``kill -9``, picks up where it stopped and loses no more than the batches in work, one a process.
 """
 
 from __future__ import annotations
 
 import fcntl
-import hashlib
-import json
-import multiprocessing
 import operator
 import os
 import sys
 import tempfile
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import asdict, dataclass
-from multiprocessing.synchronize import Event
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
+from .batches import Batches, Build, in_batches, parameters_of, write_batch
 from .errors import DustError, InvalidInput, LammpsBusy, LammpsMissing, shown
-from .files import as_path, file_error, make_folder, replace_file
+from .files import as_path, file_error
 from .impact import Impact, as_impact
-from .places import find_deck, lammps_library, plugin_if_any
-from .result import Result, read_result, write_csv
-from .runner import DECKS, run
-from .version import __version__
+from .result import Result, write_csv
+from .runner import Bench
+
+if TYPE_CHECKING:
+    from multiprocessing.synchronize import Event
 
 EXECUTORS = ("local", "mpi")
 TABLE = "results.csv"
-COMPLETE = "result.json"
 
-#: seconds between two rewritings of the table while cases come in
-TABLE_INTERVAL = 5.0
+#: of a batch: the cases in it, at most, and the seconds after which what is there is kept
+BATCH_CASES, BATCH_SECONDS = 200, 2.0
+
+#: batches that each process finds prepared in a sweep of few cases, so that all end at about the same time
+BATCHES_A_PROCESS = 4
+
+#: seconds between two rewritings of the table while cases come in, and at least so many times what one takes
+TABLE_INTERVAL, TABLE_SHARE = 5.0, 20.0
 
 #: set in the environment of the processes of a sweep
 WORKER = "DUSTDETACH_WORKER"
@@ -59,13 +60,17 @@ class CasesFailed(DustError, RuntimeError):
         return type(self), (self.failures,)
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What became of a case: a result, or why it alone has none, or why none of the others will."""
+@dataclass
+class Work:
+    """What became of some cases: results that are kept, those that alone have none and why, those that are left.
 
-    case: Impact
-    result: Result | None = None
-    failure: str = ""
+    ``stop`` is why none of the others will have one.
+    """
+
+    results: list[Result] = field(default_factory=list)
+    failures: list[tuple[Impact, str]] = field(default_factory=list)
+    left: list[Impact] = field(default_factory=list)
+    kept: str = ""
     stop: DustError | None = None
 
 
@@ -84,7 +89,7 @@ def sweep(
         out: folder of the results; made if it is not there.
         jobs: processes of the executor ``local``, from 1.
         executor: ``local``, or ``mpi`` for the ranks this process was started on (each case on one rank).
-        progress: called as ``progress(done, total, seconds left)`` when a case is done.
+        progress: called as ``progress(done, total, seconds left)`` for each case, when its batch is kept.
 
     Returns:
         The results in the order of the cases. The table holds every complete case of this build in ``out``, those of
@@ -114,10 +119,10 @@ def sweep(
     table = _Table(folder, build)
     pending = [case for case in cases if not table.has(case)]
     if jobs == 1:
-        outcomes: Iterator[Outcome] = (_attempt(folder, build, case) for case in pending)
+        done = _in_this_process(folder, build, _batches(pending, 1), table)
     else:
-        outcomes = _in_processes(folder, build, pending, jobs)
-    return _collect(cases, len(pending), outcomes, table, progress)
+        done = _in_processes(folder, build, _batches(pending, jobs), jobs, table)
+    return _collect(cases, len(pending), done, table, progress)
 
 
 def _impacts(cases: Iterable[Impact]) -> list[Impact]:
@@ -137,9 +142,13 @@ def _jobs(jobs: int) -> int:
         raise InvalidInput(f"--jobs: {shown(jobs)} is not a whole number; allowed: 1 or more") from None
     if isinstance(jobs, bool) or number < 1:
         raise InvalidInput(f"--jobs: {shown(jobs)} is out of range; allowed: 1 or more")
-    if number > 1 and multiprocessing.current_process().daemon:
+    if number == 1:
+        return number
+    import multiprocessing
+
+    if multiprocessing.current_process().daemon:
         raise InvalidInput(f"--jobs: {number} in a process that may not start others; allowed: 1")
-    if number > 1 and getattr(multiprocessing.current_process(), "_inheriting", False):
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
         if WORKER in os.environ:
             # a process of a sweep: the one that started it says why, once for all
             raise SystemExit(1)
@@ -177,91 +186,74 @@ def _check_writable(folder: Path) -> None:
         raise InvalidInput(f"--out: {fault}; allowed: a folder that can be written to") from None
 
 
+def _batches(pending: list[Impact], processes: int) -> list[list[Impact]]:
+    share = -(-len(pending) // (processes * BATCHES_A_PROCESS))
+    return list(in_batches(pending, min(BATCH_CASES, share) if processes > 1 else BATCH_CASES))
+
+
 def _collect(
-    cases: list[Impact], pending: int, outcomes: Iterable[Outcome], table: _Table, progress: Progress | None
+    cases: list[Impact], pending: int, done: Iterable[Work], table: _Table, progress: Progress | None
 ) -> list[Result]:
     report = _Report(len(cases), pending, progress)
     failures = []
-    for outcome in outcomes:
-        if outcome.stop is not None:
-            raise outcome.stop
-        if outcome.result is None:
-            failures.append((outcome.case, outcome.failure))
-        else:
-            table.add(outcome.case, outcome.result)
-        report.step()
+    for work in done:
+        table.add(work)
+        failures += work.failures
+        for _ in range(len(work.results) + len(work.failures)):
+            report.step()
+        if work.stop is not None:
+            raise work.stop
     table.write()
     if failures:
         raise CasesFailed(failures)
     return [table.row(case) for case in cases]
 
 
-class Build:
-    """What computes the results, and so belongs to the name of a case."""
-
-    def __init__(self) -> None:
-        common = {"dustdetach": __version__, "lammps": _digest(lammps_library()), "plugin": _plugin_digest()}
-        self.identity = {method: {**common, "deck": _digest(find_deck(deck))} for method, deck in DECKS.items()}
-        self.suffixes = {
-            method: hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()[:8]
-            for method, identity in self.identity.items()
-        }
-
-    def name(self, case: Impact) -> str:
-        """Name of a case's folder: what varies most, then a digest of all parameters, then one of the build."""
-        digest = hashlib.sha256(json.dumps(asdict(case)).encode()).hexdigest()[:12]
-        suffix = self.suffixes[case.method]
-        return f"{case.method}-v{case.speed:g}-a{case.angle:g}-e{case.restitution:g}-{digest}-{suffix}"
-
-    def folder(self, out: Path, case: Impact) -> Path:
-        """The case's folder in the sweep's."""
-        return out / self.name(case)
-
-
 class _Table:
-    """The rows of ``results.csv``: every complete case of this build in the folder, by name."""
+    """The rows of ``results.csv``: every complete case of this build in the folder, by its parameters."""
 
     def __init__(self, folder: Path, build: Build) -> None:
-        self._folder, self._build = folder, build
-        self._written = time.monotonic()
-        self._rows: dict[str, Result] = {}
-        self._look()
+        self._folder = folder
+        self._batches = Batches(folder, build)
+        self._write_next = time.monotonic() + TABLE_INTERVAL
+        self._rows: dict[object, Result] = {}
+        self.look()
 
     def has(self, case: Impact) -> bool:
-        return self._build.name(case) in self._rows
+        return parameters_of(case) in self._rows
 
     def row(self, case: Impact) -> Result:
-        return self._rows[self._build.name(case)]
+        return self._rows[parameters_of(case)]
 
-    def add(self, case: Impact, result: Result) -> None:
-        self._rows[self._build.name(case)] = result
-        if time.monotonic() - self._written > TABLE_INTERVAL:
+    def add(self, work: Work) -> None:
+        self._batches.know(work.kept)
+        self._rows.update((parameters_of(result), result) for result in work.results)
+        if time.monotonic() > self._write_next:
             self.write()
+
+    def look(self) -> None:
+        """Take in what other sweeps into this folder have made."""
+        for result in self._batches.new():
+            self._rows.setdefault(parameters_of(result), result)
+
+    def split(self, cases: list[Impact]) -> tuple[list[Impact], Work]:
+        """The cases that another sweep has not made meanwhile, and what it has made of the others."""
+        self.look()
+        theirs = [self.row(case) for case in cases if self.has(case)]
+        return [case for case in cases if not self.has(case)], Work(results=theirs)
 
     def write(self) -> None:
         """Write the table with what other sweeps into this folder have made, too: they may be at work now."""
+        began = time.monotonic()
         with _locked(self._folder):
-            self._look()
+            self.look()
             if self._rows:
                 rows = sorted(
-                    self._rows.values(), key=lambda row: (row.angle, row.restitution, row.speed, row.to_json())
+                    self._rows.values(), key=lambda row: (row.angle, row.restitution, row.speed, parameters_of(row))
                 )
                 write_csv(self._folder / TABLE, rows)
-        self._written = time.monotonic()
-
-    def _look(self) -> None:
-        """Take in the complete cases that are not known yet."""
-        for method, suffix in self._build.suffixes.items():
-            for path in self._folder.glob(f"{method}-*-{suffix}/{COMPLETE}"):
-                if path.parent.name not in self._rows:
-                    self._rows[path.parent.name] = _complete(path)
-
-
-def _complete(path: Path) -> Result:
-    try:
-        return read_result(path)
-    except InvalidInput as error:
-        raise InvalidInput(f"{error}; remove it, and its case is run again") from None
+        now = time.monotonic()
+        self._write_next = now + max(TABLE_INTERVAL, TABLE_SHARE * (now - began))
 
 
 @contextmanager
@@ -296,44 +288,81 @@ class _Report:
         self._progress(self._total - self._left, self._total, pace * self._left)
 
 
-def _attempt(out: Path, build: Build, case: Impact, comm: Any = None) -> Outcome:
-    """Run one case into its folder unless another sweep has; a failure is a message, so that the others go on."""
-    folder = build.folder(out, case)
+def _work(out: Path, build: Build, cases: list[Impact], comm: Any = None) -> Work:
+    """Run cases of one method until it is time to keep what is there; a failure is a message, so that others go on."""
+    work = Work(left=list(cases))
+    began = time.monotonic()
     try:
-        if os.path.exists(folder / COMPLETE):
-            return Outcome(case, result=_complete(folder / COMPLETE))
-        try:
-            result = run(case, comm=comm)
-        except LammpsBusy:
-            raise
-        except InvalidInput as error:
-            return Outcome(case, failure=str(error))
-        make_folder(folder)
-        with replace_file(folder / "build.json") as part:
-            part.write_text(json.dumps(build.identity[case.method], indent=1) + "\n")
-        with replace_file(folder / COMPLETE) as part:
-            part.write_text(result.to_json() + "\n")
-        return Outcome(case, result=result)
+        with Bench(comm) as bench:
+            for case in cases:
+                try:
+                    work.results.append(bench.run(case))
+                except LammpsBusy:
+                    raise
+                except InvalidInput as error:
+                    work.failures.append((case, str(error)))
+                del work.left[0]
+                if time.monotonic() - began > BATCH_SECONDS:
+                    break
     except DustError as error:
-        return Outcome(case, stop=error)
+        work.stop = error
+    if work.results:
+        try:
+            work.kept = write_batch(out, build, work.results)
+        except DustError as error:
+            work.results, work.stop = [], work.stop or error
+    return work
 
 
-def _in_processes(out: Path, build: Build, pending: list[Impact], jobs: int) -> Iterator[Outcome]:
-    """Outcomes as they come from processes that are started afresh: LAMMPS and MPI do not survive a fork."""
+def _in_this_process(
+    out: Path, build: Build, batches: Iterable[list[Impact]], table: _Table | None, comm: Any = None
+) -> Iterator[Work]:
+    """One batch after another, up to the first after which there is no point in going on."""
+    for batch in batches:
+        left = batch
+        if table is not None:
+            left, theirs = table.split(batch)
+            yield theirs
+        while left:
+            work = _work(out, build, left, comm)
+            yield work
+            if work.stop is not None:
+                return
+            left = work.left
+
+
+def _in_processes(out: Path, build: Build, batches: list[list[Impact]], jobs: int, table: _Table) -> Iterator[Work]:
+    """Work as it comes from processes that are started afresh: LAMMPS and MPI do not survive a fork."""
+    import multiprocessing
+    from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+    from concurrent.futures.process import BrokenProcessPool
+
     context = multiprocessing.get_context("spawn")
     ready = context.Event()
+    waiting = deque(batches)
+    running: dict[Future[Work], list[Impact]] = {}
     os.environ[WORKER] = "1"
     try:
-        with ProcessPoolExecutor(min(jobs, len(pending)) or 1, context, _start_worker, (ready,)) as pool:
-            futures = {pool.submit(_attempt, out, build, case): case for case in pending}
+        with ProcessPoolExecutor(min(jobs, len(batches)) or 1, context, _start_worker, (ready,)) as pool:
             try:
-                for future in as_completed(futures):
-                    try:
-                        yield future.result()
-                    except BrokenProcessPool:
-                        if not ready.is_set():
-                            raise InvalidInput(NO_GUARD) from None
-                        yield Outcome(futures[future], failure="the process that ran it died")
+                while waiting or running:
+                    # one more than work: no process waits for its next batch
+                    while waiting and len(running) < 2 * jobs:
+                        batch, theirs = table.split(waiting.popleft())
+                        yield theirs
+                        if batch:
+                            running[pool.submit(_work, out, build, batch)] = batch
+                    for future in wait(running, return_when=FIRST_COMPLETED).done:
+                        batch = running.pop(future)
+                        work = future.result()
+                        if work.left:
+                            waiting.appendleft(work.left)
+                        yield work
+            except BrokenProcessPool:
+                if not ready.is_set():
+                    raise InvalidInput(NO_GUARD) from None
+                lost = [case for batch in (batch, *running.values(), *waiting) for case in batch]
+                yield Work(failures=[(case, "the process that ran it died") for case in lost])
             finally:
                 pool.shutdown(wait=False, cancel_futures=True)
     finally:
@@ -348,6 +377,8 @@ def _start_worker(ready: Event) -> None:
 
 def _die_with_parent() -> None:
     """End this worker when the sweep is killed: it would wait for work forever."""
+    import multiprocessing
+
     parent = multiprocessing.parent_process()
 
     def wait() -> None:
@@ -366,22 +397,24 @@ def _sweep_on_ranks(cases: list[Impact], folder: Path, build: Build, progress: P
         raise LammpsMissing(f"--executor mpi needs mpi4py ({error}); pip install 'dustdetach[mpi]'") from None
     world = MPI.COMM_WORLD
     try:
-        table, plan = _plan(cases, folder, build) if world.rank == 0 else (None, None)
+        table, plan = _plan(cases, folder, build, world.size) if world.rank == 0 else (None, None)
         plan = world.bcast(plan)
         if isinstance(plan, DustError):
             raise plan
-        mine = _until_stop(_attempt(folder, build, case, MPI.COMM_SELF) for case in plan[world.rank :: world.size])
+        mine = _in_this_process(folder, build, plan[world.rank :: world.size], None, MPI.COMM_SELF)
         if table is None:
-            world.gather(list(mine))
-            answer = world.bcast(None)
+            _hand_in(mine, world, MPI.Request.testall)
+            _sleep_until(lambda: world.iprobe(source=0))
+            answer = world.recv(source=0)
         else:
-            outcomes = _then_gather(mine, world)
+            done = _and_of_others(mine, world)
             try:
-                answer = _collect(cases, len(plan), outcomes, table, progress)
+                answer = _collect(cases, sum(map(len, plan)), done, table, progress)
             except DustError as error:
-                outcomes.close()
+                done.close()
                 answer = error
-            world.bcast(answer)
+            for rank in range(1, world.size):
+                world.send(answer, rank)
     except DustError:
         raise
     except Exception as error:
@@ -394,41 +427,43 @@ def _sweep_on_ranks(cases: list[Impact], folder: Path, build: Build, progress: P
     return cast("list[Result]", answer)
 
 
-def _plan(cases: list[Impact], folder: Path, build: Build) -> tuple[_Table | None, list[Impact] | DustError]:
+def _plan(
+    cases: list[Impact], folder: Path, build: Build, ranks: int
+) -> tuple[_Table | None, list[list[Impact]] | DustError]:
     """The table and the cases that are missing in it, or what is wrong in the folder."""
     try:
         table = _Table(folder, build)
     except DustError as error:
         return None, error
-    return table, [case for case in cases if not table.has(case)]
+    return table, _batches([case for case in cases if not table.has(case)], ranks)
 
 
-def _until_stop(outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
-    """The outcomes up to the first after which there is no point in going on."""
-    for outcome in outcomes:
-        yield outcome
-        if outcome.stop is not None:
-            return
+def _hand_in(mine: Iterable[Work], world: Any, testall: Callable[[list[Any]], tuple[bool, Any]]) -> None:
+    """A rank's own work to rank 0 as it comes, then the word that this was all."""
+    sent = [world.isend(work, 0) for work in mine]
+    sent.append(world.isend(None, 0))
+    _sleep_until(lambda: testall(sent)[0])
 
 
-def _then_gather(mine: Iterable[Outcome], world: Any) -> Generator[Outcome, None, None]:
-    """Rank 0's own outcomes as they come, then those of the others, who wait for this also if it is closed before."""
+def _and_of_others(mine: Iterable[Work], world: Any) -> Generator[Work, None, None]:
+    """Rank 0's own work as it comes, then that of the others, who are waited for also if this is closed before."""
+    at_work = world.size - 1
     try:
         yield from mine
+        while at_work:
+            _sleep_until(world.iprobe)
+            theirs = world.recv()
+            if theirs is None:
+                at_work -= 1
+            else:
+                yield theirs
     finally:
-        others = world.gather([])[1:]
-    for outcomes in others:
-        yield from outcomes
+        while at_work:
+            _sleep_until(world.iprobe)
+            at_work -= world.recv() is None
 
 
-def _plugin_digest() -> str:
-    """Of every library of the plugin: the one LAMMPS loads may be a door to another beside it."""
-    plugin = plugin_if_any()
-    return _digest(*sorted(plugin.parent.glob("dust*.so"))) if plugin else "compiled into LAMMPS"
-
-
-def _digest(*paths: Path) -> str:
-    try:
-        return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
-    except OSError as error:
-        raise LammpsMissing(f"{error.filename}: {error.strerror}") from None
+def _sleep_until(true: Callable[[], bool]) -> None:
+    """MPI itself waits with the processor busy, which others need."""
+    while not true():
+        time.sleep(0.01)

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidInput, LammpsMissing, MachineFault, shown
+from .errors import InvalidInput, LammpsMissing, MachineFault
 from .files import as_path, check_file, read_text, replace_file, scratch_folder, writable_file
-from .impact import Impact, as_impact, finite_number
+from .impact import Impact, as_impact
 from .places import find_core
 from .session import lammps_file, lammps_session
 
@@ -55,45 +55,15 @@ class Texture:
 #: in a texture file
 BYTES_A_GRAIN = 120
 
-DISTRIBUTIONS = ("lognormal", "rrsb")
 
-
-@dataclass(frozen=True)
-class Distribution:
-    """Sizes of grains by volume, cut at the volume fractions 0.01 and 0.99.
-
-    Attributes:
-        kind: ``lognormal`` or ``rrsb`` (Rosin-Rammler).
-        median: x_50,3, m, above 0.
-        spread: geometric standard deviation, above 1, or the exponent of ``rrsb``, above 0.
-
-    Raises:
-        InvalidInput: a value outside its range.
-    """
-
-    kind: str
-    median: float
-    spread: float
-
-    def __post_init__(self) -> None:
-        if self.kind not in DISTRIBUTIONS:
-            allowed = ", ".join(DISTRIBUTIONS)
-            raise InvalidInput(f"--distribution: unknown choice {shown(self.kind)}; allowed: {allowed}")
-        least = 1.0 if self.kind == "lognormal" else 0.0
-        for name, value, low in (("median diameter", self.median, 0.0), ("spread", self.spread, least)):
-            if not finite_number("distribution", value) > low:
-                raise InvalidInput(f"--distribution: {name} {value:g} is out of range; allowed: above {low:g}")
-
-
-def make_texture(impact: Impact, path: str | Path, distribution: Distribution | None = None) -> None:
-    """Make the texture of an impact (its coverage, bare cap, diameters, spread and seed) and write it to a file.
+def make_texture(impact: Impact, path: str | Path) -> None:
+    """Make the texture of an impact (its coverage, bare cap, sizes, spread and seed) and write it to a file.
 
     The grains are placed by ``fix dust/detach``, so that an impact with the same parameters has the same ones.
 
     Args:
         impact: the parameters.
         path: the file.
-        distribution: sizes of the grains, in place of the impact's grain diameter.
 
     Raises:
         InvalidInput: the coverage cannot be placed, or there can be no file of this name.
@@ -101,13 +71,12 @@ def make_texture(impact: Impact, path: str | Path, distribution: Distribution | 
     """
     impact = as_impact(impact, "make_texture")
     path = writable_file(as_path(path, "--out"), "--out")
-    sizes = f" distribution {distribution.kind} {distribution.median!r} {distribution.spread!r}" if distribution else ""
     # LAMMPS takes no quote in a name, so it writes to another place
     with scratch_folder(BYTES_A_GRAIN * impact.grains) as folder:
         grains = folder / "texture"
         try:
             with lammps_session() as lmp:
-                lmp.commands_list(_placement(impact, sizes, grains))
+                lmp.commands_list(_placement(impact, grains))
         except InvalidInput as error:
             if str(grains) in str(error):
                 raise MachineFault(str(error)) from None
@@ -117,8 +86,11 @@ def make_texture(impact: Impact, path: str | Path, distribution: Distribution | 
         part.write_text(text)
 
 
-def _placement(impact: Impact, sizes: str, grains: Path) -> list[str]:
+def _placement(impact: Impact, grains: Path) -> list[str]:
     """The commands that place the grains of an impact and write them to a file."""
+    sizes = ""
+    if impact.distribution != "none":
+        sizes = f" distribution {impact.distribution} {impact.grain_diameter!r} {impact.distribution_spread!r}"
     side = f"-{impact.carrier_diameter!r} {impact.carrier_diameter!r}"
     return [
         "units si",
