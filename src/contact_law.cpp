@@ -91,7 +91,7 @@ ContactLaw::ContactLaw(GranularModel *_model, int number) :
     kind(kind_of(_model)), model(_model), normal(nullptr), stiffness(0.0), damping(0.0), shear_stiffness(0.0),
     shear_damping(0.0), friction(0.0), theta_crit(0.0), synchronized(synchronizes(_model, 0)), shear_place(0),
     neck_place(0), stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(), last_i(-1.0), last_j(-1.0),
-    reach2(0.0)
+    reach2(0.0), largest_radius(0.0), largest_reach(0.0)
 {
   if (kind == MODEL) return;
   damping = Damping::coefficient(model->damping_model);
@@ -122,6 +122,10 @@ void ContactLaw::find_adhesion(double radius_i, double radius_j)
   const double radii = radius_i + radius_j;
   effective_radius = radius_i * radius_j / radii;
   adhesion = normal->adhesion(effective_radius);
+  if (effective_radius > largest_radius) {
+    largest_radius = effective_radius;
+    largest_reach = adhesion.reach;
+  }
   const double reach = radii + adhesion.reach;
   reach2 = reach * reach;
 }

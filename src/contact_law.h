@@ -40,20 +40,27 @@ class ContactLaw {
 
   bool heats() const;
 
-  // whether spheres of these radii are within reach of each other, of grains
+  // whether spheres of these radii are within reach of each other, of grains; true leaves their adhesion here
   bool grain_touches(double rsq, double radius_i, double radius_j)
   {
-    use_radii(radius_i, radius_j);
+    if (radius_i != last_i || radius_j != last_j) {
+      if (far(rsq, radius_i, radius_j)) return false;
+      find_adhesion(radius_i, radius_j);
+    }
     return rsq < reach2;
-  }
-
-  void use_radii(double radius_i, double radius_j)
-  {
-    if (kind == GRAIN && (radius_i != last_i || radius_j != last_j)) find_adhesion(radius_i, radius_j);
   }
 
  private:
   double last_i, last_j, reach2;
+  double largest_radius, largest_reach;    // of all effective radii so far: the larger, the farther
+
+  // beyond the reach of the largest ones
+  bool far(double rsq, double radius_i, double radius_j) const
+  {
+    constexpr double SLACK = 1.0e-12;
+    const double radii = radius_i + radius_j, reach = (radii + largest_reach) * (1.0 + SLACK);
+    return rsq > reach * reach && radius_i * radius_j <= largest_radius * radii;
+  }
   void find_adhesion(double, double);
 };
 

@@ -22,7 +22,7 @@ static constexpr double SLACK = 1.0e-12;    // LAMMPS compares squares
 /* ---------------------------------------------------------------------- */
 
 FixWallGranNear::FixWallGranNear(LAMMPS *_lmp, int narg, char **arg) :
-    FixWallGran(_lmp, narg, arg), skips(false), last_radius(-1.0), last_reach(0.0)
+    FixWallGran(_lmp, narg, arg), skips(false), largest_radius(-1.0), largest_gap(0.0)
 {
 }
 
@@ -35,21 +35,21 @@ void FixWallGranNear::init()
   FixWallGran::init();
   const bool adhesive = dynamic_cast<const Granular_NS::GranSubModNormalJKRVdW *>(model->normal_model);
   skips = wallstyle >= 0 && wallstyle < DIMENSIONS && !wiggle && !heat_flag && (adhesive || !model->beyond_contact);
-  last_radius = -1.0;
+  largest_radius = -1.0;
   close.clear();
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   adhesion reaches the farther the larger an atom is: as far as that of the largest one will do
+------------------------------------------------------------------------- */
 
 double FixWallGranNear::reach(double radius)
 {
-  if (radius != last_radius) {
-    last_radius = radius;
-    last_reach = radius;
-    if (model->beyond_contact) last_reach += model->pulloff_distance(radius, 0.0);
-    last_reach *= 1.0 + SLACK;
+  if (radius > largest_radius) {
+    largest_radius = radius;
+    largest_gap = model->beyond_contact ? model->pulloff_distance(radius, 0.0) : 0.0;
   }
-  return last_reach;
+  return (radius + largest_gap) * (1.0 + SLACK);
 }
 
 /* ----------------------------------------------------------------------
@@ -65,9 +65,11 @@ void FixWallGranNear::find_near()
   const int *mask = atom->mask;
   const double *const *x = atom->x, *radius = atom->radius;
   for (int i = 0; i < nlocal; i++) {
+    groups[i] = 0;
+    if (!(mask[i] & groupbit)) continue;
     const double distance = std::min(std::fabs(x[i][wallstyle] - lo), std::fabs(hi - x[i][wallstyle]));
     const char now = distance < reach(radius[i]);
-    groups[i] = now | close[i] ? mask[i] : 0;
+    if (now || close[i]) groups[i] = mask[i];
     close[i] = now;
   }
 }

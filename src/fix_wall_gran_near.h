@@ -32,7 +32,7 @@ class FixWallGranNear : public FixWallGran {
   std::vector<int> groups;    // of the atoms near the wall, 0 of all others
   std::vector<char> close;    // now
   bool skips;                 // whether atoms may be skipped
-  double last_radius, last_reach;
+  double largest_radius, largest_gap;
   double reach(double);
   void find_near();
 };

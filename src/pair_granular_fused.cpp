@@ -189,6 +189,7 @@ template <bool HERTZ_ALONE> void PairGranularFused::gather()
         touch[jj] = touches;
         if (!touches) forget(history);    // else it is 0 already
       }
+      if (!HERTZ_ALONE && touches) take_place(contacts[m]);
       m += touches;
       if (m == ContactBatch::COUNT) {
         compute_waiting(m);
@@ -213,6 +214,18 @@ double PairGranularFused::effective_mass(int i, int j) const
     if (atom->mask[i] & freeze_group_bit) return mj;
   }
   return mi * mj / (mi + mj);
+}
+
+/* ----------------------------------------------------------------------
+   in the batch of its law, whose coefficients stand there if the last contact had the same
+------------------------------------------------------------------------- */
+
+void PairGranularFused::take_place(Contact &contact)
+{
+  const ContactLaw &law = *contact.law;
+  if (law.kind == ContactLaw::MODEL) return;    // has one
+  contact.place = waiting->batch(law.kind).count++;
+  if (waiting->stamp[law.kind][contact.place] != law.stamp) set_coefficients(law, contact.place);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -258,14 +271,13 @@ void PairGranularFused::complete()
       __builtin_prefetch(later.history);
     }
     Contact &contact = waiting->contacts[m];
-    ContactLaw &law = *contact.law;
+    const ContactLaw &law = *contact.law;
     if (law.kind == ContactLaw::MODEL) continue;
     const int i = contact.i, j = contact.j;
     const double ri = radius[i], rj = radius[j];
     ContactBatch &batch = waiting->batch(law.kind);
-    const int k = contact.place = batch.count++;
-    law.use_radii(ri, rj);
-    if (waiting->stamp[law.kind][k] != law.stamp) set_coefficients(law, k);
+    if (hertz_alone) take_place(contact);
+    const int k = contact.place;
 
     const Vector wi = at(omega, i), wj = at(omega, j);
     batch.dx.set(k, contact.dx);

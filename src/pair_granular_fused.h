@@ -51,6 +51,7 @@ class PairGranularFused : public PairGranular {
   double effective_mass(int, int) const;
   void compute_waiting(int);
   void complete();
+  void take_place(Contact &);
   void set_coefficients(const class ContactLaw &, int);
   void keep_history();
   void apply_forces();
