@@ -38,7 +38,7 @@ def test_the_picture_says_what_it_shows(figures_folder, tmp_path):
 
 
 def resolved(row, **changes):
-    return replace(row, method="resolved", normal=None, tangential_mode=None, timestep=1e-9, **changes)
+    return replace(row, method="resolved", normal=None, tangential_mode=None, knocked=None, timestep=1e-9, **changes)
 
 
 @pytest.mark.filterwarnings("error")

@@ -113,7 +113,7 @@ def test_what_a_resolved_run_does_not_know_is_empty(tmp_path, resolved_result):
     write_csv(tmp_path / "results.csv", [resolved_result])
     names, values = (line.split(",") for line in (tmp_path / "results.csv").read_text().splitlines())
     row = dict(zip(names, values, strict=True))
-    assert [name for name, value in row.items() if value == ""] == ["normal", "tangential_mode"]
+    assert [name for name, value in row.items() if value == ""] == ["normal", "tangential_mode", "knocked"]
 
 
 def test_an_empty_field_is_wrong_elsewhere(tmp_path, resolved_result):

@@ -108,6 +108,36 @@ def test_shares_add_up():
     assert result.grains == 4500
 
 
+@pytest.mark.parametrize("sizes", [{}, {"distribution": "lognormal", "distribution_spread": 1.5, "bare": 0.6}])
+def test_grains_that_meet(sizes):
+    impact = Impact(speed=8.0, meet=True, grain_diameter=40e-6, coverage=0.15, **sizes)
+    assert impact.tangential == "integrate"  # by itself
+    result, alone = run(impact), run(replace(impact, meet=False, tangential="integrate"))
+    assert result.end == "settled"
+    assert result.north + result.south == pytest.approx(result.dispersion_ratio, abs=1e-12)
+    modes = result.normal + result.tangential_mode + result.knocked
+    assert modes == pytest.approx(result.dispersion_ratio, abs=1e-12)
+    assert alone.knocked == 0
+    if sizes:
+        assert result.knocked > 0.02
+    else:
+        assert result.dispersion_ratio == pytest.approx(alone.dispersion_ratio, abs=0.004)  # 4 of 675 grains
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"tangential": "impulse"}, "--meet: true does nothing with --tangential impulse"),
+        ({"method": "resolved"}, "--meet: true is for the functions"),
+        ({"meet": "yes"}, "--meet: 'yes' is not true or false"),
+        ({"grain": "lactose", "surface_energy": 0.016}, "--grain-hamaker: the material lactose has no Hamaker constant"),
+    ],
+)
+def test_grains_that_meet_need(changes, message):
+    with pytest.raises(InvalidInput, match=message):
+        Impact(**{"speed": 8.0, "meet": True, **changes})
+
+
 def test_the_same_impact_gives_the_same_numbers_and_another_seed_other_ones():
     impact = Impact(speed=7.0)
     first, second, other = run(impact), run(impact), run(replace(impact, seed=2))

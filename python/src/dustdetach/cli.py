@@ -297,7 +297,8 @@ def _watch() -> Callable[[float], None]:
 def _summary(result: Result) -> str:
     modes = []
     if result.normal is not None and result.tangential_mode is not None:
-        modes = [f"  by lift-off      normal {result.normal:.4f}   tangential {result.tangential_mode:.4f}"]
+        knocked = f"   knocked off {result.knocked:.4f}" if result.meet else ""
+        modes = [f"  by lift-off      normal {result.normal:.4f}   tangential {result.tangential_mode:.4f}{knocked}"]
     return "\n".join(
         [
             f"impact at {result.speed:g} m/s, {result.angle:g} degrees, restitution {result.restitution:g}, "

@@ -27,6 +27,8 @@ class DetachVector(IntEnum):
     SLIDING = 11
     ROLLING = 12
     NO_ROOM = 13
+    KNOCKED = 14
+    FOLLOWED = 15
 
 
 @unique
@@ -85,3 +87,4 @@ class Mode(IntEnum):
     TANGENTIAL = 2
     SLIDING = 3
     ROLLING = 4
+    KNOCKED = 5

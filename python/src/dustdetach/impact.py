@@ -78,6 +78,8 @@ class Impact(Parameters):
             value = converted(name, PARAMETER_TYPES[name], value)
             about.check(name, value)
             object.__setattr__(self, name, value)
+        if self.meet and not given(self.tangential):
+            object.__setattr__(self, "tangential", DerivedWord("integrate"))
         self._fill_materials()
         self._check_sizes()
         self._fill_adhesion()
@@ -88,6 +90,7 @@ class Impact(Parameters):
                 f"not know how a grain's contact rings; allowed: {Impact.grain_damping:g}, or --tangential "
                 + " or ".join(RINGING)
             )
+        self._check_meeting()
         self._check_spin()
         self._fill("timestep", default_timestep(self))
         steps = self.hertz_contact_time / self.timestep
@@ -180,7 +183,7 @@ class Impact(Parameters):
             self._fill("surface_energy", self.hamaker / (18 * math.pi * self.z0**2))
         self._fill("wall_hamaker", self._wall_hamaker())
         own = self.material("grain").hamaker
-        if own is None and self.method == "resolved" and not given(self.grain_hamaker):
+        if own is None and (self.method == "resolved" or self.meet) and not given(self.grain_hamaker):
             raise InvalidInput(
                 f"--grain-hamaker: the material {self.grain} has no Hamaker constant; allowed: "
                 f"{ABOUT['grain_hamaker'].allowed}"
@@ -234,6 +237,18 @@ class Impact(Parameters):
 
     def _mass(self, diameter: float) -> float:
         return math.pi / 6 * diameter**3 * self.grain_density
+
+    def _check_meeting(self) -> None:
+        """Grains that meet are followed, by one law."""
+        if not self.meet:
+            return
+        if self.method == "resolved":
+            raise InvalidInput("--meet: true is for the functions, in a resolved run grains always meet; allowed: false")
+        if self.tangential != "integrate":
+            raise InvalidInput(
+                f"--meet: true does nothing with --tangential {self.tangential}, which follows no grain; allowed: "
+                "--tangential integrate"
+            )
 
     def _check_spin(self) -> None:
         """A spin that throws grains off before the impact is not this impact's."""
@@ -365,6 +380,8 @@ class Impact(Parameters):
                 variables["sigma_g"] = self.distribution_spread
             return variables
         variables["rotation"] = "yes" if self.rotation else "no"
+        if self.meet:
+            variables["cohesion"] = self.grain_hamaker / self.hamaker
         if self.tangential not in RINGING:
             del variables["grain_damping"]
         if self.distribution != "none":

@@ -30,8 +30,8 @@ CARRIER, WALL, GRAIN = (DerivedWord(name) for name in ("stainless steel", "stain
 #: in place of a material's name where its numbers alone are given
 OWN = DerivedWord("own numbers")
 
-#: versions of records: with a spread of adhesion, with materials
-SPREAD, MATERIALS = 1, 2
+#: versions of records: with a spread of adhesion, with materials, with grains that meet
+SPREAD, MATERIALS, MEETING = 1, 2, 3
 
 _FUNCTIONS, _RESOLVED = ("functions",), ("resolved",)
 
@@ -57,10 +57,10 @@ def _name(part: str) -> dict[str, About]:
     return about(f"material of the {part}; dustdetach materials shows all", symbol=part, deck=False, since=MATERIALS)
 
 
-def _hamaker(pair: str, follows: str, variable: str) -> dict[str, About]:
-    """Metadata of a Hamaker constant that resolved runs alone use."""
+def _hamaker(pair: str, follows: str, variable: str, used: str = "") -> dict[str, About]:
+    """Metadata of a Hamaker constant that resolved runs use, and what else does."""
     return about(
-        f"Hamaker constant of {pair}, in a resolved run",
+        f"Hamaker constant of {pair}, in a resolved run{used}",
         unit="J",
         least=1e-22,
         most=1e-17,
@@ -212,7 +212,7 @@ class Parameters:
         ),
     )
     grain_hamaker: float = field(
-        default=FOLLOWS, metadata=_hamaker("two grains", "that of the material --grain", "hamaker_grains")
+        default=FOLLOWS, metadata=_hamaker("two grains", "that of the material --grain", "hamaker_grains", " and with --meet")
     )
     z0: float = field(
         default=0.4e-9,
@@ -274,12 +274,23 @@ class Parameters:
         default=1, metadata=about("seed of the random texture", least=1, most=LARGEST_SEED, symbol="seed")
     )
     tangential: str = field(
-        default="impulse",
+        default=DerivedWord("impulse"),
         metadata=about(
             "law of tangential lift-off: " + ", ".join(TANGENTIAL),
             choices=TANGENTIAL,
             methods=_FUNCTIONS,
             symbol="law",
+        ),
+    )
+    meet: bool = field(
+        default=False,
+        metadata=about(
+            "whether moving grains knock others off, which takes seconds, by --tangential integrate; in resolved runs "
+            "they always do",
+            deck=False,
+            methods=_FUNCTIONS,
+            symbol="grains meet",
+            since=MEETING,
         ),
     )
     rotation: bool = field(

@@ -66,6 +66,9 @@ FATES = (
     Kind("attached", GRAIN.colour),
     Kind("detached, normal lift-off", (0.84, 0.37, 0.0)),
     Kind("detached, tangential lift-off", (0.0, 0.45, 0.70)),
+    Kind("detached by sliding", (0.0, 0.62, 0.45)),
+    Kind("detached by rolling", (0.80, 0.47, 0.65)),
+    Kind("knocked off by others", (0.34, 0.71, 0.91)),
 )
 
 #: what a grain is at a moment of a resolved impact
@@ -306,9 +309,11 @@ def _mark(kind: Kind, label: str) -> Line2D:
 
 
 def _legend(counts: NDArray[np.int64]) -> list[Line2D]:
-    total = counts.sum()
+    total, usual = counts.sum(), 3
     return [
-        _mark(kind, f"{kind.name}: {count} ({count / total:.1%})") for kind, count in zip(FATES, counts, strict=True)
+        _mark(kind, f"{kind.name}: {count} ({count / total:.1%})")
+        for number, (kind, count) in enumerate(zip(FATES, counts, strict=True))
+        if number < usual or count
     ]
 
 

@@ -19,7 +19,7 @@ from .about import about, described
 from .errors import InvalidInput, shown
 from .files import as_path, read_text, replace_file
 from .impact import Impact
-from .parameters import SPREAD, Parameters
+from .parameters import MEETING, SPREAD, Parameters
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +49,14 @@ class Result(Parameters):
     )
     tangential_mode: float | None = field(
         metadata=about("share by tangential lift-off (Eqs. 3-6); empty in a resolved run", least=0.0, most=1.0)
+    )
+    knocked: float | None = field(
+        metadata=about(
+            "share that others knocked off, with --meet; empty in a resolved run",
+            least=0.0,
+            most=1.0,
+            since=MEETING,
+        )
     )
     contact_time: float = field(
         metadata=about(
@@ -125,7 +133,8 @@ def _filled(values: dict[str, Any]) -> Result:
     if not values.keys() >= _NEWER:
         reference = Impact(speed=1.0).values()
         made = values["hamaker"] / (18 * math.pi * values["z0"] ** 2)
-        older = {**reference, "wall_hamaker": values["hamaker"], "surface_energy": made}
+        knocked = 0.0 if values["method"] == "functions" else None
+        older = {**reference, "knocked": knocked, "wall_hamaker": values["hamaker"], "surface_energy": made}
         values = {**{name: older[name] for name in _NEWER}, **values}
     return Result(**values)
 

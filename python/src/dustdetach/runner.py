@@ -283,12 +283,20 @@ def _read_functions(lmp: Any, impact: Impact) -> dict[str, Any]:
         "south": fix.total(DetachVector.SOUTH) / grains,
         "normal": fix.total(DetachVector.NORMAL) / grains,
         "tangential_mode": fix.total(DetachVector.TANGENTIAL) / grains,
+        "knocked": fix.total(DetachVector.KNOCKED) / grains,
         "contact_time": fix.of_carrier(DetachAtom.CONTACT_TIME),
         "peak_acceleration": fix.of_carrier(DetachAtom.PEAK_ACCELERATION),
         "restitution_realised": float(lmp.extract_atom("v")[0][2])
         / (impact.speed * math.sin(math.radians(impact.angle))),
-        "end": "rebound" if fix.total(DetachVector.COLLISIONS) > 0 else "step limit",
+        "end": _end(fix, impact),
     }
+
+
+def _end(fix: _FixOutput, impact: Impact) -> str:
+    """Why a run of the functions has stopped."""
+    if fix.total(DetachVector.COLLISIONS) == 0 or fix.total(DetachVector.FOLLOWED) > 0:
+        return "step limit"
+    return "settled" if impact.meet else "rebound"
 
 
 def _read_resolved(lmp: Any) -> dict[str, Any]:
@@ -298,6 +306,7 @@ def _read_resolved(lmp: Any) -> dict[str, Any]:
         "grains": int(lmp.extract_variable("grains")),
         "normal": None,
         "tangential_mode": None,
+        "knocked": None,
         "end": lmp.extract_variable("end"),
     }
 

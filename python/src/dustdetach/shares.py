@@ -56,4 +56,5 @@ def mass_shares(events: Path, change: Sequence[float], texture: Path) -> dict[st
         "south": float(np.sum(masses[off & ~north])),
         "normal": float(np.sum(masses[fates == Mode.NORMAL])),
         "tangential_mode": float(np.sum(masses[fates == Mode.TANGENTIAL])),
+        "knocked": float(np.sum(masses[fates == Mode.KNOCKED])),
     }
