@@ -68,7 +68,7 @@ def one_material_for(modulus, poisson, other_modulus, other_poisson):
 
 
 def test_glass_beads_on_steel_are_the_deck_written_by_hand(command):
-    printed = json.loads(command("impact", *GLASS_ON_STEEL, "--json").stdout)
+    printed = json.loads(command("impact", *GLASS_ON_STEEL, "--timestep", "1e-9", "--json").stdout)
     modulus, poisson = one_material_for(70e9, 0.2, 210e9, 0.3)
     with lammps_session() as lmp:
         lmp.commands_string(DECK.format(modulus=modulus, poisson=poisson))
@@ -84,7 +84,7 @@ def test_glass_beads_on_steel_are_the_deck_written_by_hand(command):
 
 
 def test_unlike_materials_touch_as_long_as_hertz_says():
-    soft = Impact(speed=5.0, carrier="glass", wall="polyethylene", restitution=1.0)
+    soft = Impact(speed=5.0, carrier="glass", wall="polyethylene", restitution=1.0, timestep=1e-9)
     assert soft.contact_modulus == pytest.approx(1 / ((1 - 0.2**2) / 70e9 + (1 - 0.42**2) / 1e9))
     assert run(soft).contact_time == pytest.approx(soft.hertz_contact_time, rel=0.002)
     assert run(replace(soft, wall="glass")).contact_time < run(soft).contact_time / 2
@@ -165,8 +165,8 @@ def test_spin_is_that_of_the_deck_with_one(command):
 
 
 def test_shares_of_a_distribution_are_by_mass(command):
-    words = ("impact", "--speed", "8", "--distribution", "lognormal", "15e-6", "1.5", "--bare", "0.4", "--json")
-    printed = json.loads(command(*words).stdout)
+    words = ("impact", "--speed", "8", "--distribution", "lognormal", "15e-6", "1.5", "--bare", "0.4", "--timestep", "1e-9")
+    printed = json.loads(command(*words, "--json").stdout)
     # what in.impact.distribution prints: by mass 0.5838, by number 6322 of 13711
     assert printed["dispersion_ratio"] == pytest.approx(0.5838, abs=5e-5)
     assert printed["north"] + printed["south"] == pytest.approx(printed["dispersion_ratio"], rel=1e-9)
