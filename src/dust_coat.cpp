@@ -146,6 +146,12 @@ DustCoat DustCoats::make(double key, double radius) const
   coat.radius = coat.texture->carrier_radius;
   const Table made = table_of(coat.texture, material_of(settings), settings.criteria);
   coat.table = made.table;
+  // from about 5 times that on all grains come off, without a message
+  if (settings.criteria.meet && settings.meet_step > coat.table->contact_time())
+    error->all(
+        FLERR,
+        "Fix dust/detach {} meet_step {} must be at most {:.3g} for carriers of diameter {:.5g}: twice its default",
+        fix->id, settings.meet_step, coat.table->contact_time(), 2.0 * coat.radius);
   coat.checksum = made.checksum;
   coat.mass = empty() ? 1.0 : coat.table->mean_mass() / unit_mass();
   return coat;

@@ -114,10 +114,9 @@ void GrainTable::fill_sites(const Texture &texture)
     std::copy_n(g.n, 3, site.n);
     site.grain = order[bit].grain;
   }
-  // half of the time sqrt(m/k0) of a grain of mean mass
   const double radius = std::cbrt(mass / (4.0 / 3.0 * PI * matter.density)), r12 = effective_radius(rp, radius);
   const double a0 = equilibrium_contact_radius(matter.gamma, r12, matter.modulus);
-  following_step = matter.step > 0.0 ? matter.step : 0.5 * std::sqrt(mass / (1.2 * matter.modulus * a0));
+  time_of_contact = std::sqrt(mass / (1.2 * matter.modulus * a0));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -32,7 +32,8 @@ struct Material {
 
   auto all() const
   {
-    return std::make_tuple(density, gamma, modulus, friction, rolling, damping, cohesion, grain_modulus, softening, step);
+    return std::make_tuple(density, gamma, modulus, friction, rolling, damping, cohesion, grain_modulus, softening,
+                           step);
   }
   bool operator==(const Material &other) const { return all() == other.all(); }
 };
@@ -91,8 +92,10 @@ class GrainTable {
   /*! Overshoot of contacts that ring (normal_motion.h), 0 if they do not */
   double overshoot() const { return ring; }
 
+  /*! sqrt(m/k0) of the contact of a grain of the mean mass with its carrier */
+  double contact_time() const { return time_of_contact; }
   /*! Time step in which grains that meet are followed */
-  double step() const { return following_step; }
+  double step() const { return matter.step > 0.0 ? matter.step : 0.5 * time_of_contact; }
 
   /*! Whether inertia can make a grain slide (or leave) that moves with its carrier: if none can, it is at rest */
   bool may_move(const Motion &motion) const;
@@ -114,7 +117,7 @@ class GrainTable {
   double ring;
   const TangentialLaw *law;
   double rp;
-  double mass, following_step;
+  double mass, time_of_contact;
   double hold_min, hold_max, shell_max, velocity2_min;
   double force_min[NMODES];
   double moving;

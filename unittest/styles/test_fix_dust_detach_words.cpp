@@ -316,6 +316,7 @@ TEST(FixDustDetachWords, WrongInputIsNamed)
   names(ok + "tangential integrate meet yes cohesion 0", "cohesion");
   names(ok + "tangential integrate meet yes meet_softening 0.5", "meet_softening");
   names(ok + "tangential integrate meet yes meet_step -1e-9", "meet_step");
+  names(ok + "tangential integrate meet yes meet_step 1e-7", "meet_step 1e-07 must be at most");
   names(ok + "rolling", "rolling");
   names(ok + "criteria all", "all");
   names(ok + "every 0", "every value 0");
