@@ -185,5 +185,6 @@ double CarrierData::memory_usage() const
 {
   double bytes = double(atom->nmax) * (size(0) * sizeof(double) + sizeof(std::vector<uint64_t>));
   for (const std::vector<uint64_t> &words : attached) bytes += words.capacity() * sizeof(uint64_t);
+  for (const auto &followed : together) bytes += sizeof(followed) + (followed ? followed->memory_usage() : 0.0);
   return bytes;
 }

@@ -268,3 +268,17 @@ void Entrainment::unpack(Unpacker &from)
   }
   pairs.set_necks(std::move(necks));
 }
+
+int Entrainment::packed_size() const
+{
+  constexpr size_t SINGLE = numbers_of<Quaternion>() + 8, GRAIN = 3 + numbers_of<GrainLanes::Grain>(), NECK = 2;
+  const auto here = static_cast<size_t>(std::count(present.begin(), present.end(), 1));
+  return static_cast<int>(SINGLE + numbers_of<Moment>() * moments.size() + GRAIN * here + NECK * pairs.necks().size());
+}
+
+double Entrainment::memory_usage() const
+{
+  constexpr size_t GRAIN = 4 * sizeof(char) + sizeof(Mode);
+  return sizeof(*this) + double(present.size()) * GRAIN + double(moments.capacity()) * sizeof(Moment) +
+      grains.memory_usage() + pairs.memory_usage();
+}

@@ -70,6 +70,10 @@ class Entrainment {
   // transfer to another rank and restart
   void pack(Packer &packer) const;
   void unpack(Unpacker &unpacker);
+  /*! Numbers that pack() takes, told at once */
+  int packed_size() const;
+
+  double memory_usage() const;    //!< bytes
 
  private:
   const GrainTable &table;

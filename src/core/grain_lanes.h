@@ -109,6 +109,12 @@ class GrainLanes {
   /*! All without a neck to the carrier, in any order */
   void find_flying(std::vector<int> &found) const;
 
+  double memory_usage() const    //!< bytes
+  {
+    return double(blocks.size()) * sizeof(Block) + double(slots.size()) * 2 * sizeof(int) +
+        double(places.size()) * sizeof(double);
+  }
+
   /*! Grains side by side */
   struct alignas(64) Block {
     // constants of grains

@@ -53,6 +53,11 @@ class GrainPairs {
     travelled = skin;
   }
 
+  double memory_usage() const    //!< bytes
+  {
+    return double(pairs.capacity()) * sizeof(Pair) + double(joined.capacity()) * sizeof(Neck);
+  }
+
  private:
   struct Pair {
     int first, second;

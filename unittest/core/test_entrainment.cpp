@@ -79,6 +79,8 @@ Followed follow(const GrainTable &table, Impact &impact, double call = 1.0e-7, i
     if (!handover || k % handover) continue;
     Packer counter;
     together->pack(counter);
+    EXPECT_EQ(counter.size(), together->packed_size());
+    EXPECT_GT(together->memory_usage(), 280.0 * table.grains());
     std::vector<double> buffer(counter.size());
     Packer packer(buffer.data());
     together->pack(packer);
