@@ -273,6 +273,17 @@ void DeckChecks::collision_over(int i, double steps, const Course &course)
                      softness.which, atom->tag[i], softness.factor, softness.advice));
 }
 
+// a load that lasts, such as that of an arm that turns, is a collision that never ends
+void DeckChecks::not_counted(int i, double steps, double grains)
+{
+  if ((noticed & bit(NOT_COUNTED)) || grains == 0.0) return;
+  notice(NOT_COUNTED,
+         fmt::format(
+             "{:.0f} grains have lifted off carrier {} in a collision of {:.0f} steps so far: with meet yes they are "
+             "counted when it is over; use meet no for a load that lasts",
+             grains, atom->tag[i], steps));
+}
+
 /* ----------------------------------------------------------------------
    whether what carrier i has just lost contact with is dust: atoms that are no carriers and no larger than its grains,
    and no other atom. The collision with a carrier or a wall is what should be followed.

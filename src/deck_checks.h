@@ -57,6 +57,8 @@ class DeckChecks : protected Pointers {
   void grains_left(int i, const double *acceleration, const Course &);
   // in the end of a collision of carrier i: so many steps after it has come the contact is lost; or it lasts, 0 steps
   void collision_over(int i, double steps, const Course &);
+  // at the end of a run, of grains that meet: so many have lifted off carrier i in a collision that is not over
+  void not_counted(int i, double steps, double grains);
 
   // whether another fix changes the motion that the contact force gives a carrier: one carrier is watched at a time,
   // over two strong steps
@@ -76,7 +78,7 @@ class DeckChecks : protected Pointers {
   void tell();
 
  private:
-  enum Notice { PULLS, FEW_STEPS, SOFT, NOT_FOLLOWED, NNOTICES };
+  enum Notice { PULLS, FEW_STEPS, SOFT, NOT_FOLLOWED, NOT_COUNTED, NNOTICES };
   static unsigned bit(Notice notice) { return 1u << notice; }
 
   const Fix *dust;

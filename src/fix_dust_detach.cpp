@@ -337,7 +337,10 @@ void FixDustDetach::finish_collision(int i, int next)
 {
   Dust::Collision &collision = collisions[carriers.state[i]];
   const Dust::Motion motion = motion_of(i);
-  if (collision.end(table_of(i), motion.spin, carriers.attached[i].data(), collisions.work) && !settings.criteria.meet)
+  // a strong one has ended the following: this one is passed over
+  const bool followed = settings.criteria.meet && carriers.together[i];
+  if (!followed && collision.end(table_of(i), motion.spin, carriers.attached[i].data(), collisions.work) &&
+      !settings.criteria.meet)
     record(i);
   array_atom[i][DetachAtom::PEAK_ACCELERATION] = collision.peak_acceleration();
   checks.collision_over(i, next == FREE_FLIGHT ? steps - carriers.began[i] : 0.0, course_of(i));
@@ -479,8 +482,11 @@ void FixDustDetach::post_run()
   }
   if (settings.lose_mass) tell_ghosts();
   share_exchange_room();
-  for (int i = 0; i < atom->nlocal; i++)    // of collisions that are not over, too
-    if (carriers.state[i] >= 0) checks.collision_over(i, 0.0, course_of(i));
+  for (int i = 0; i < atom->nlocal; i++) {    // of collisions that are not over, too
+    if (carriers.state[i] < 0) continue;
+    checks.collision_over(i, 0.0, course_of(i));
+    if (settings.criteria.meet) checks.not_counted(i, steps - carriers.began[i], lifted(i));
+  }
   checks.tell();
 }
 

@@ -126,6 +126,7 @@ class FixDustDetach : public Fix {
   DustShedding::Grain as_it_left(int, const Carried &, const Dust::Detachment &, double before, double height) const;
   void record(int);
   void record_together(int);
+  double lifted(int) const;
   void add_row(int, const DustShedding::Grain &, Dust::Mode, double before);
   void close_step();
   void close_window();

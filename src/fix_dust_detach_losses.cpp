@@ -74,8 +74,8 @@ DustShedding::Grain FixDustDetach::as_it_left(int i, const Carried &carrier, con
   const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
   DustShedding::Grain left = {number + 1.0, mass, radius, shedding.now() - before, {}, {}, {}};
   for (int k = 0; k < 3; k++) {
-    left.x[k] = carrier.x[k] - before * carrier.v[k] + d.carrier_place[k] / settings.stiffen_time +
-        distance * d.direction[k];
+    left.x[k] =
+        carrier.x[k] - before * carrier.v[k] + d.carrier_place[k] / settings.stiffen_time + distance * d.direction[k];
     left.v[k] = carrier.v[k] + d.carrier_velocity[k] + d.velocity[k];
     left.spin[k] = atom->omega[i][k];
   }
@@ -144,6 +144,15 @@ void FixDustDetach::record_together(int i)
   book(i, loss);
   together.changes.clear();
   together.departures.clear();
+  if (settings.emit || together.packed_size() > exchange_room) make_exchange_room(i);
+}
+
+// grains of carrier i that have lifted off in the collision that is under way, which nobody has counted
+double FixDustDetach::lifted(int i) const
+{
+  double left = 0.0;
+  for (const uint64_t word : carriers.attached[i]) left += __builtin_popcountll(word);
+  return array_atom[i][DetachAtom::ATTACHED] - left;
 }
 
 /* ----------------------------------------------------------------------

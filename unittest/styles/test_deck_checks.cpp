@@ -696,6 +696,22 @@ TEST(DeckChecks, SoftContactsOfACollisionThatLasts)
   expect_warning(c, {"1000 times softer", "stiffen 1000"});
 }
 
+// grains that meet are counted when a collision is over: one that never ends would give 0 without a message
+TEST(DeckChecks, MeetingUnderALoadThatLasts)
+{
+  Case c;
+  c.wall = "";
+  c.motion = "move rotate 0 0 -0.01 0 1 0 1e-3";
+  c.timestep = 1e-8;
+  c.steps = 500;
+  const std::string again = "fix dust all dust/detach " + REFERENCE_DUST + " inertia motion tangential integrate meet ";
+  c.after = again + "yes";
+  expect_warning(c, {"grains have lifted off carrier 1 in a collision of", "meet no"});
+  c.after = again + "no";
+  EXPECT_GT(run(c).ratio, 0.1);
+  EXPECT_EQ(run(c).all(), "");
+}
+
 // damping that has its own scale of time is not softened with the contact
 TEST(DeckChecks, StiffenWithDampingThatDoesNotFollow)
 {
