@@ -2,12 +2,13 @@
 
     . build/environment; build/venv/bin/python benchmarks/meeting.py run        half an hour; goes on where it stopped
     . build/environment; build/venv/bin/python benchmarks/meeting.py compare    two minutes
+    . build/environment; build/venv/bin/python benchmarks/meeting.py numerics   three minutes: softening and step
     . build/environment; build/venv/bin/python benchmarks/meeting.py cost       five minutes: both side by side
     . build/environment; build/venv/bin/python benchmarks/meeting.py picture    a layer before and after
 
 `run` writes the resolved dispersion ratio of each microsecond to meeting/resolved.csv, with the processor time, and
 meeting/machine.json. `compare` runs lammps-inputs/in.impact.meet on the same inputs, with nothing adjusted, and writes
-meeting/functions.csv, meeting/comparison.csv and doc/images/meeting.png; `cost` writes meeting/cost.json.
+meeting/functions.csv, meeting/comparison.csv and doc/images/meeting.png; `numerics` writes meeting/numerics.csv, `cost` writes meeting/cost.json.
 """
 
 import argparse
@@ -82,11 +83,11 @@ def alone(case: tuple[str, ...]) -> float:
     return float(re.findall(r"^dispersion ratio ([\d.]+)", said, re.MULTILINE)[-1])
 
 
-def functions(case: tuple[str, ...]) -> list[dict[str, str]]:
-    """The same of the fix with meet yes."""
+def functions(case: tuple[str, ...], more: str = "") -> list[dict[str, str]]:
+    """The same of the fix with meet yes and more keywords."""
     with tempfile.TemporaryDirectory() as folder:
         curve = Path(folder) / "curve"
-        _, seconds = lammps("in.impact.meet", inputs(case) | {"curve": str(curve)})
+        _, seconds = lammps("in.impact.meet", inputs(case) | {"curve": str(curve), "more": more})
         lines = [line.split() for line in curve.read_text().splitlines() if not line.startswith("#")]
     start = {**dict(zip(CASE, case[:5], strict=True)), "cpu_seconds": f"{seconds:.1f}"}
     whole = [(time, ratio) for time, ratio in lines if time.endswith(".0") and float(time) > 0]
@@ -137,6 +138,17 @@ def compare() -> None:
     differences = [abs(float(row["difference"])) for row in table]
     print(f"mean {statistics.mean(differences):.4f}, largest {max(differences):.4f}")
     draw(read(RESOLVED), found)
+
+
+def numerics() -> None:
+    """How far softening and step move the ratio, at 8 m/s."""
+    table = []
+    for softening, step in ((10, 5), (30, 5), (30, 10), (30, 20), (100, 5), (100, 10), (100, 20), (300, 5), (300, 10), (300, 20)):
+        rows = functions(CASES[1], f"meet_softening {softening} meet_step {step}e-9")
+        ratios = {row["microseconds"]: f"{float(row['dispersion_ratio']):.4f}" for row in rows}
+        table.append({"softening": str(softening), "step": f"{step} ns", **{f"{t} us": ratios[t] for t in ("10", "20", "60")}})
+        print(*table[-1].values(), flush=True)
+    write(HERE / "numerics.csv", table[0], table)
 
 
 def draw(resolved_rows: list[dict[str, str]], function_rows: list[dict[str, str]]) -> None:
@@ -222,13 +234,13 @@ def picture() -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("run", "compare", "cost", "picture"))
+    parser.add_argument("what", choices=("run", "compare", "numerics", "cost", "picture"))
     parser.add_argument("--repeat", type=int, default=3)
     arguments = parser.parse_args()
     if arguments.what == "cost":
         cost(arguments.repeat)
     else:
-        {"run": run, "compare": compare, "picture": picture}[arguments.what]()
+        {"run": run, "compare": compare, "numerics": numerics, "picture": picture}[arguments.what]()
 
 
 if __name__ == "__main__":
