@@ -74,8 +74,8 @@ DustShedding::Grain FixDustDetach::as_it_left(int i, const Carried &carrier, con
   const double mass = coat.table->weight(d.bit) * coat.table->mean_mass();
   DustShedding::Grain left = {number + 1.0, mass, radius, shedding.now() - before, {}, {}, {}};
   for (int k = 0; k < 3; k++) {
-    left.x[k] = carrier.x[k] - before * carrier.v[k] + d.carrier_place[k] / settings.stiffen_time +
-        distance * d.direction[k];
+    left.x[k] =
+        carrier.x[k] - before * carrier.v[k] + d.carrier_place[k] / settings.stiffen_time + distance * d.direction[k];
     left.v[k] = carrier.v[k] + d.carrier_velocity[k] + d.velocity[k];
     left.spin[k] = atom->omega[i][k];
   }

@@ -130,7 +130,10 @@ def test_grains_that_meet(sizes):
         ({"tangential": "impulse"}, "--meet: true does nothing with --tangential impulse"),
         ({"method": "resolved"}, "--meet: true is for the functions"),
         ({"meet": "yes"}, "--meet: 'yes' is not true or false"),
-        ({"grain": "lactose", "surface_energy": 0.016}, "--grain-hamaker: the material lactose has no Hamaker constant"),
+        (
+            {"grain": "lactose", "surface_energy": 0.016},
+            "--grain-hamaker: the material lactose has no Hamaker constant",
+        ),
     ],
 )
 def test_grains_that_meet_need(changes, message):

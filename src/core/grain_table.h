@@ -32,7 +32,8 @@ struct Material {
 
   auto all() const
   {
-    return std::make_tuple(density, gamma, modulus, friction, rolling, damping, cohesion, grain_modulus, softening, step);
+    return std::make_tuple(density, gamma, modulus, friction, rolling, damping, cohesion, grain_modulus, softening,
+                           step);
   }
   bool operator==(const Material &other) const { return all() == other.all(); }
 };
