@@ -200,7 +200,7 @@ def draw(resolved_rows: list[dict[str, str]], function_rows: list[dict[str, str]
 
 def cost(repeat: int) -> None:
     """Processor times of both, one after the other, in pairs."""
-    case = CASES[1][:5] + ("20",)
+    case = (*CASES[1][:5], "20")
     pairs = [
         (float(resolved(case)[-1]["cpu_seconds"]), float(functions(case)[-1]["cpu_seconds"])) for _ in range(repeat)
     ]
