@@ -74,6 +74,14 @@ def test_every_detachment_of_an_impact_is_in_the_events(tmp_path):
     ]
 
 
+def test_grains_of_many_sizes_that_knock_each_other_off_are_drawn(tmp_path):
+    sizes = {"distribution": "lognormal", "distribution_spread": 1.5, "bare": 0.6}
+    result = draw_impact(Impact(speed=8.0, meet=True, grain_diameter=40e-6, **sizes), tmp_path / "layer.png")
+    assert result.knocked > 0.02
+    light_blue = (0.34, 0.71, 0.91)
+    assert share(plt.imread(tmp_path / "layer.png")[:, :, :3], *light_blue) > 0.001
+
+
 def test_an_event_of_a_grain_that_is_not_there(tmp_path):
     (tmp_path / "events").write_text("ITEM: ENTRIES step carrier grain mode\n5 1 7 1\n")
     with pytest.raises(InvalidInput, match="an event of grain 7"):
