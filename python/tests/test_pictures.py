@@ -52,7 +52,7 @@ def test_marks_are_a_round_length_and_the_direction_of_the_impact():
 
 
 def test_an_impact_colours_what_comes_off(tmp_path):
-    _, orange, blue = (kind.colour for kind in module.FATES)
+    _, orange, blue, *_ = (kind.colour for kind in module.FATES)
     slow = draw_impact(Impact(speed=3.0), tmp_path / "slow.png")
     fast = draw_impact(Impact(speed=10.0), tmp_path / "fast.png")
     assert slow.north == 0 < fast.north
