@@ -54,8 +54,16 @@ def table(folder: Path) -> dict[str, np.ndarray]:
 
 def draw_carriers(axes, rows: np.ndarray):
     """All carriers seen along y, those in front over those behind, coloured by the dust they have lost; mm."""
-    carriers = EllipseCollection(*[2e3 * rows[:, 4]] * 2, 0, units="xy", offsets=1e3 * rows[:, [1, 3]],
-                                 offset_transform=axes.transData, cmap="YlOrBr_r", edgecolor="0.25", linewidth=0.15)
+    carriers = EllipseCollection(
+        *[2e3 * rows[:, 4]] * 2,
+        0,
+        units="xy",
+        offsets=1e3 * rows[:, [1, 3]],
+        offset_transform=axes.transData,
+        cmap="YlOrBr_r",
+        edgecolor="0.25",
+        linewidth=0.15,
+    )
     # mass lost and brought, where carriers bring unequally much
     carriers.set_array(rows[:, 9] / rows[:, 10] if rows.shape[1] > 10 else 1 - rows[:, 8] / GRAINS)
     carriers.set_clim(0, 1)
@@ -76,7 +84,7 @@ def save(figure, name: str) -> None:
 
 def bar(figure, axes, carriers) -> None:
     figure.colorbar(carriers, ax=axes, shrink=0.7, pad=0.01, label="share of its dust\nthat a carrier has lost")
-    figure.get_layout_engine().set(wspace=0.06)    # between the bar and the curve
+    figure.get_layout_engine().set(wspace=0.06)  # between the bar and the curve
 
 
 def curve(axes, folder: Path, words: str) -> None:
@@ -98,7 +106,7 @@ def drum(folder: Path) -> None:
         carriers = draw_carriers(place, all_frames[step])
         carriers.set_clim(0, 0.25)
         place.add_patch(plt.Circle((0, 0), 50, fill=False, **WALL))
-        for angle in turned + np.pi / 2 * np.arange(4):    # the bars; about y, z turns towards x
+        for angle in turned + np.pi / 2 * np.arange(4):  # the bars; about y, z turns towards x
             along = np.array([np.cos(angle), -np.sin(angle)])
             place.plot(*np.outer(along, (45, 50)), color="0.35", linewidth=3, solid_capstyle="butt")
         place.set(xlim=(-51, 51), ylim=(-51, 51), title=f"{turned / 2 / np.pi:.2f} turns")
@@ -116,7 +124,7 @@ def drop(folder: Path) -> None:
         carriers = draw_carriers(place, all_frames[step])
         place.set_title(f"{(step - steps[0]) * 2e-3:.1f} ms")
     bar(figure, axes[0], carriers)
-    field = sum(read_field(file) for file in folder.glob("field.*.vtr")).sum(axis=1)    # over time and y
+    field = sum(read_field(file) for file in folder.glob("field.*.vtr")).sum(axis=1)  # over time and y
     edges = [np.linspace(-60, 60, 25), np.arange(len(field) + 1) * 5.0]
     shown = axes[1, 1].pcolormesh(*edges, np.where(field > 0, field * 1e9, np.nan), cmap="viridis", norm=LogNorm())
     figure.colorbar(shown, ax=axes[1, 1], label="dust that came off, ug")

@@ -31,7 +31,7 @@ def run(carriers: int, ranks: int = 1, fall: str = "", **variables: str) -> dict
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.drop"
         # every detachment, to the last digit
-        dump = f'{fall}\n\\1dump rows all local ${{every}} rows {ROWS}\ndump_modify rows format float %.17g\n'
+        dump = f"{fall}\n\\1dump rows all local ${{every}} rows {ROWS}\ndump_modify rows format float %.17g\n"
         text, n = re.subn(r"^(fix +field .*\n)", dump, (ROOT / "lammps-inputs/in.drop").read_text(), flags=re.MULTILINE)
         assert n == 1
         deck.write_text(text)
@@ -64,14 +64,20 @@ def falls(carriers: int, seeds: int) -> dict:
     ratios = [one["ratio"] for one in runs]
     spread = {"mean": statistics.mean(ratios), "standard_deviation": statistics.stdev(ratios)}
     result = {"seeds": ratios, **spread, "seed 1": {}}
-    print(f"{seeds} seeds: {result['mean']:.5f}, standard deviation {result['standard_deviation']:.5f}, "
-          f"range {min(ratios):.5f} to {max(ratios):.5f}", flush=True)
+    print(
+        f"{seeds} seeds: {result['mean']:.5f}, standard deviation {result['standard_deviation']:.5f}, "
+        f"range {min(ratios):.5f} to {max(ratios):.5f}",
+        flush=True,
+    )
     for name, changes in OTHERS.items():
         other = run(carriers, **changes)
         same = other["rows"] == runs[0]["rows"]
         result["seed 1"][name] = {"ratio": other["ratio"], "difference": other["ratio"] - ratios[0], "same_rows": same}
-        print(f"{name}: {other['ratio']:.5f}, difference {other['ratio'] - ratios[0]:+.5f}, "
-              f"{'the same' if same else 'other'} {len(other['rows'])} rows", flush=True)
+        print(
+            f"{name}: {other['ratio']:.5f}, difference {other['ratio'] - ratios[0]:+.5f}, "
+            f"{'the same' if same else 'other'} {len(other['rows'])} rows",
+            flush=True,
+        )
     return result
 
 

@@ -58,10 +58,18 @@ def loop_time(deck: Path, variables: dict[str, str]) -> float:
 def instructions(deck: Path, variables: dict[str, str]) -> tuple[int, int]:
     """Instructions of the fix's post_force and of the whole time loop."""
     out = deck.parent / "callgrind.out"
-    subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", *command(deck, variables)],
-                   capture_output=True, check=True, cwd=deck.parent)
-    table = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)],
-                           capture_output=True, text=True, check=True).stdout
+    subprocess.run(
+        ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", *command(deck, variables)],
+        capture_output=True,
+        check=True,
+        cwd=deck.parent,
+    )
+    table = subprocess.run(
+        ["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
 
     def count(function: str) -> int:
         return int(re.search(rf"^ *([\d,]+) .*{re.escape(function)}", table, re.MULTILINE)[1].replace(",", ""))
@@ -83,16 +91,25 @@ def main() -> None:
                 for which, path in paths.items():
                     times[which].append(loop_time(path, variables))
             with_fix, rest = (min(times[which]) for which in ("with", "without"))
-            row = {"loop_seconds_with": with_fix, "loop_seconds_without": rest,
-                   "fix_share_of_loop": (with_fix - rest) / with_fix, "fix_against_rest": (with_fix - rest) / rest}
+            row = {
+                "loop_seconds_with": with_fix,
+                "loop_seconds_without": rest,
+                "fix_share_of_loop": (with_fix - rest) / with_fix,
+                "fix_against_rest": (with_fix - rest) / rest,
+            }
             if shutil.which("valgrind"):
                 fix, loop = instructions(paths["with"], variables | {"limit": str(min(int(variables["limit"]), 3000))})
                 row |= {"instructions_fix": fix, "instructions_loop": loop, "instructions_fix_share": fix / loop}
             result[case] = row
-            print(f"{case}: the fix takes {100 * row['fix_share_of_loop']:.1f} % of the loop time, "
-                  f"{row['fix_against_rest']:.2f} of the rest of the step"
-                  + (f"; {100 * row['instructions_fix_share']:.1f} % of the instructions"
-                     if "instructions_fix" in row else ""))
+            print(
+                f"{case}: the fix takes {100 * row['fix_share_of_loop']:.1f} % of the loop time, "
+                f"{row['fix_against_rest']:.2f} of the rest of the step"
+                + (
+                    f"; {100 * row['instructions_fix_share']:.1f} % of the instructions"
+                    if "instructions_fix" in row
+                    else ""
+                )
+            )
     if args.out:
         args.out.write_text(json.dumps(result, indent=1) + "\n")
 

@@ -2,12 +2,14 @@
 
     . build/environment; build/venv/bin/python benchmarks/meeting.py run        half an hour; goes on where it stopped
     . build/environment; build/venv/bin/python benchmarks/meeting.py compare    two minutes
+    . build/environment; build/venv/bin/python benchmarks/meeting.py numerics   three minutes: softening and step
     . build/environment; build/venv/bin/python benchmarks/meeting.py cost       five minutes: both side by side
     . build/environment; build/venv/bin/python benchmarks/meeting.py picture    a layer before and after
 
 `run` writes the resolved dispersion ratio of each microsecond to meeting/resolved.csv, with the processor time, and
 meeting/machine.json. `compare` runs lammps-inputs/in.impact.meet on the same inputs, with nothing adjusted, and writes
-meeting/functions.csv, meeting/comparison.csv and doc/images/meeting.png; `cost` writes meeting/cost.json.
+meeting/functions.csv, meeting/comparison.csv and doc/images/meeting.png; `numerics` writes meeting/numerics.csv, `cost`
+meeting/cost.json.
 """
 
 import argparse
@@ -73,7 +75,9 @@ def resolved(case: tuple[str, ...]) -> list[dict[str, str]]:
 
 def inputs(case: tuple[str, ...]) -> dict[str, str]:
     """Variables of in.impact.meet."""
-    return dict(zip(("sizes", "width", "coverage", "speed", "angle", "limit"), (*case[:5], f"{case[5]}e-6"), strict=True))
+    return dict(
+        zip(("sizes", "width", "coverage", "speed", "angle", "limit"), (*case[:5], f"{case[5]}e-6"), strict=True)
+    )
 
 
 def alone(case: tuple[str, ...]) -> float:
@@ -82,11 +86,11 @@ def alone(case: tuple[str, ...]) -> float:
     return float(re.findall(r"^dispersion ratio ([\d.]+)", said, re.MULTILINE)[-1])
 
 
-def functions(case: tuple[str, ...]) -> list[dict[str, str]]:
-    """The same of the fix with meet yes."""
+def functions(case: tuple[str, ...], more: str = "") -> list[dict[str, str]]:
+    """The same of the fix with meet yes and more keywords."""
     with tempfile.TemporaryDirectory() as folder:
         curve = Path(folder) / "curve"
-        _, seconds = lammps("in.impact.meet", inputs(case) | {"curve": str(curve)})
+        _, seconds = lammps("in.impact.meet", inputs(case) | {"curve": str(curve), "more": more})
         lines = [line.split() for line in curve.read_text().splitlines() if not line.startswith("#")]
     start = {**dict(zip(CASE, case[:5], strict=True)), "cpu_seconds": f"{seconds:.1f}"}
     whole = [(time, ratio) for time, ratio in lines if time.endswith(".0") and float(time) > 0]
@@ -139,6 +143,30 @@ def compare() -> None:
     draw(read(RESOLVED), found)
 
 
+def numerics() -> None:
+    """How far softening and step move the ratio, at 8 m/s."""
+    table = []
+    for softening, step in (
+        (10, 5),
+        (30, 5),
+        (30, 10),
+        (30, 20),
+        (100, 5),
+        (100, 10),
+        (100, 20),
+        (300, 5),
+        (300, 10),
+        (300, 20),
+    ):
+        rows = functions(CASES[1], f"meet_softening {softening} meet_step {step}e-9")
+        ratios = {row["microseconds"]: f"{float(row['dispersion_ratio']):.4f}" for row in rows}
+        table.append(
+            {"softening": str(softening), "step": f"{step} ns", **{f"{t} us": ratios[t] for t in ("10", "20", "60")}}
+        )
+        print(*table[-1].values(), flush=True)
+    write(HERE / "numerics.csv", table[0], table)
+
+
 def draw(resolved_rows: list[dict[str, str]], function_rows: list[dict[str, str]]) -> None:
     import matplotlib.pyplot as plt
 
@@ -157,7 +185,9 @@ def draw(resolved_rows: list[dict[str, str]], function_rows: list[dict[str, str]
                     for row in rows
                     if key(row) == case[:5] and 4 <= int(row["microseconds"]) <= until
                 ]
-                axis.plot(*zip(*points, strict=True), color=colour, label=label if style["ls"] == "-" else None, **style)
+                axis.plot(
+                    *zip(*points, strict=True), color=colour, label=label if style["ls"] == "-" else None, **style
+                )
     axes[0].set_ylabel("dispersion ratio (mass)")
     for axis, letter in zip(axes, "ab", strict=True):
         axis.set_xlabel("time after first contact (µs)")
@@ -170,8 +200,10 @@ def draw(resolved_rows: list[dict[str, str]], function_rows: list[dict[str, str]
 
 def cost(repeat: int) -> None:
     """Processor times of both, one after the other, in pairs."""
-    case = CASES[1][:5] + ("20",)
-    pairs = [(float(resolved(case)[-1]["cpu_seconds"]), float(functions(case)[-1]["cpu_seconds"])) for _ in range(repeat)]
+    case = (*CASES[1][:5], "20")
+    pairs = [
+        (float(resolved(case)[-1]["cpu_seconds"]), float(functions(case)[-1]["cpu_seconds"])) for _ in range(repeat)
+    ]
     result = {
         "case": dict(zip((*CASE, "microseconds"), case, strict=True)),
         "resolved_seconds": [there for there, _ in pairs],
@@ -196,8 +228,16 @@ def picture() -> None:
     with tempfile.TemporaryDirectory() as folder:
         texture, events = Path(folder) / "texture", Path(folder) / "events"
         lammps("in.impact.meet", {"more": f"write {texture}", "events": str(events)})
-        grains = [[float(word) for word in line.split()[:4]] for line in texture.read_text().splitlines() if line[:1] in "-0123456789"]
-        left = [line.split() for line in events.read_text().splitlines() if re.fullmatch(r"[-\d.e+]+( [-\d.e+]+){11} ?", line)]
+        grains = [
+            [float(word) for word in line.split()[:4]]
+            for line in texture.read_text().splitlines()
+            if line[:1] in "-0123456789"
+        ]
+        left = [
+            line.split()
+            for line in events.read_text().splitlines()
+            if re.fullmatch(r"[-\d.e+]+( [-\d.e+]+){11} ?", line)
+        ]
     mode = {int(float(row[2])): int(float(row[3])) for row in left}
     figure, axes = plt.subplots(1, 2, figsize=(10, 5.2), layout="constrained")
     for axis, title, shown in zip(axes, ("(a) before", "(b) after"), (tuple(FATES), ("stays",)), strict=True):
@@ -222,13 +262,13 @@ def picture() -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("run", "compare", "cost", "picture"))
+    parser.add_argument("what", choices=("run", "compare", "numerics", "cost", "picture"))
     parser.add_argument("--repeat", type=int, default=3)
     arguments = parser.parse_args()
     if arguments.what == "cost":
         cost(arguments.repeat)
     else:
-        {"run": run, "compare": compare, "picture": picture}[arguments.what]()
+        {"run": run, "compare": compare, "numerics": numerics, "picture": picture}[arguments.what]()
 
 
 if __name__ == "__main__":

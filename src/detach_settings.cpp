@@ -10,6 +10,7 @@
 #include "group.h"
 
 #include <cmath>
+#include <utility>
 
 using namespace LAMMPS_NS;
 
@@ -19,9 +20,8 @@ static constexpr double UNSET = -1.0;
 
 DetachSettings::DetachSettings(LAMMPS *_lmp, int igroup, int narg, char **arg) :
     DustOptions(_lmp, "Fix dust/detach"), friction(UNSET), rolling(0.15), damping(UNSET), cohesion(UNSET),
-    meet_softening(UNSET), meet_step(UNSET), every(1), keep_rows(true),
-    rotation(true), stiffen(1.0), stiffen_acceleration(1.0), stiffen_time(1.0), by_motion(false), lose_mass(false),
-    emit(0), weightless(false)
+    meet_softening(UNSET), meet_step(UNSET), every(1), keep_rows(true), rotation(true), stiffen(1.0),
+    stiffen_acceleration(1.0), stiffen_time(1.0), by_motion(false), lose_mass(false), emit(0), weightless(false)
 {
   class_width = 0.05;
   constexpr int FIRST = 3;    // after ID, group and style

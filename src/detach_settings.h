@@ -25,7 +25,7 @@ class DetachSettings : public DustOptions {
   double damping;    // below 0: none, the normal motion is quasi-static
   // of grains that meet: adhesion among them over that to the carrier; numbers of the following, 0: by default
   double cohesion, meet_softening, meet_step;
-  int every;         // steps of a window
+  int every;    // steps of a window
   bool keep_rows, rotation;
   double stiffen;                               // by which factor the deck's contacts are softer than the real ones
   double stiffen_acceleration, stiffen_time;    // what softened contacts give, times these, is what stiff ones would

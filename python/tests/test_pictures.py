@@ -52,7 +52,7 @@ def test_marks_are_a_round_length_and_the_direction_of_the_impact():
 
 
 def test_an_impact_colours_what_comes_off(tmp_path):
-    _, orange, blue = (kind.colour for kind in module.FATES)
+    _, orange, blue, *_ = (kind.colour for kind in module.FATES)
     slow = draw_impact(Impact(speed=3.0), tmp_path / "slow.png")
     fast = draw_impact(Impact(speed=10.0), tmp_path / "fast.png")
     assert slow.north == 0 < fast.north
@@ -72,6 +72,14 @@ def test_every_detachment_of_an_impact_is_in_the_events(tmp_path):
         round(4500 * result.normal),
         round(4500 * result.tangential_mode),
     ]
+
+
+def test_grains_of_many_sizes_that_knock_each_other_off_are_drawn(tmp_path):
+    sizes = {"distribution": "lognormal", "distribution_spread": 1.5, "bare": 0.6}
+    result = draw_impact(Impact(speed=8.0, meet=True, grain_diameter=40e-6, **sizes), tmp_path / "layer.png")
+    assert result.knocked > 0.02
+    light_blue = (0.34, 0.71, 0.91)
+    assert share(plt.imread(tmp_path / "layer.png")[:, :, :3], *light_blue) > 0.001
 
 
 def test_an_event_of_a_grain_that_is_not_there(tmp_path):

@@ -88,6 +88,8 @@ def test_what_is_the_same_everywhere_is_said(row, tmp_path, drawn):
         assert part in said
     assert "$v_p$" not in said and "mu_w" not in said
     assert fixed_words(rows[:1]).count("$v_p$ = 2 m/s") == 1
+    assert "Delta t" not in fixed_words(rows[:1])
+    assert r"$\Delta t$ = 2 ns" in fixed_words([made(row, **case, timestep=2e-9) for case in GRID])
 
 
 def test_seeds_and_uncertain_inputs_are_bands(row, tmp_path, drawn):

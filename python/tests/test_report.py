@@ -38,7 +38,7 @@ def test_the_report_says_what_it_is_about(swept):
     assert report.name == "report.html"
     for words in (
         "Dust from glass carriers that hit steel",
-        "impact speed: 4, 8, 12 m/s",
+        "Asked in 6 impacts: impact speed: 4, 8, 12 m/s; angle between velocity and wall: 45, 90°.",
         "carrier glass of 2 mm: 2500 kg/m3, 70 GPa, Poisson 0.2",
         "One texture (seed 1) in all impacts",
         "Digests: dustdetach",

@@ -130,7 +130,10 @@ def test_grains_that_meet(sizes):
         ({"tangential": "impulse"}, "--meet: true does nothing with --tangential impulse"),
         ({"method": "resolved"}, "--meet: true is for the functions"),
         ({"meet": "yes"}, "--meet: 'yes' is not true or false"),
-        ({"grain": "lactose", "surface_energy": 0.016}, "--grain-hamaker: the material lactose has no Hamaker constant"),
+        (
+            {"grain": "lactose", "surface_energy": 0.016},
+            "--grain-hamaker: the material lactose has no Hamaker constant",
+        ),
     ],
 )
 def test_grains_that_meet_need(changes, message):
@@ -335,6 +338,7 @@ def test_seconds_are_those_of_each_impact():
         ({"restitution": 0.9, "tangential": "estimate", "carrier_diameter": 0.3e-3}, 300),
         ({"grain_damping": 0.2}, 3000),
         ({"wall_friction": 0.3, "angle": 60.0}, 3000),
+        ({"carrier": "glass", "carrier_diameter": 2e-3, "wall": "polyethylene"}, 300),
     ],
 )
 def test_the_default_time_step_is_short_enough(changes, steps):

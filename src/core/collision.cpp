@@ -291,9 +291,8 @@ void Collision::hand_over(const GrainTable &table, const double *spin, const std
   std::vector<uint64_t> start = strong->start;    // empty if none has
   if (start.empty()) start.assign(attached, attached + table.words());
   for (size_t word = 0; word < start.size(); word++)
-    each_bit(start[word] & ~attached[word], [&](int k) {
-      alone.push_back({static_cast<int>(word) * PATCH + k, NORMAL, {}, {}, 0.0, {}, {}});
-    });
+    each_bit(start[word] & ~attached[word],
+             [&](int k) { alone.push_back({static_cast<int>(word) * PATCH + k, NORMAL, {}, {}, 0.0, {}, {}}); });
   alone.insert(alone.end(), late.begin(), late.end());
   std::copy(start.begin(), start.end(), attached);
   together.follow(past_at(spin), course.frame, start.data(), alone);

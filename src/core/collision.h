@@ -106,8 +106,8 @@ class alignas(64) Collision {
    *  \param spin  after the contact */
   bool end(const GrainTable &table, const double *spin, uint64_t *attached, Workspace &work);
 
-  /*! After end(), for grains that meet: hands them to those who follow them together, from the first contact on. All that
-   *  were attached then are so again in `attached`
+  /*! After end(), for grains that meet: hands them to those who follow them together, from the first contact on. All
+   *  that were attached then are so again in `attached`
    *  \param spin  after the contact
    *  \param late  what end() has let go */
   void hand_over(const GrainTable &table, const double *spin, const std::vector<Detachment> &late, uint64_t *attached,

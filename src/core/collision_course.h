@@ -18,8 +18,8 @@ struct Substep {
   double acceleration_after[3], spin_after[3];
 };
 
-/*! The course of a collision in steps small enough to follow grains; it must have been recorded. What is at the end of a
- *  span lies between the means of this span and the next; contact forces end at 0 */
+/*! The course of a collision in steps small enough to follow grains; it must have been recorded. What is at the end of
+ *  a span lies between the means of this span and the next; contact forces end at 0 */
 std::vector<Substep> substeps(const PastCollision &past);
 
 }    // namespace Dust

@@ -19,16 +19,15 @@
 
 namespace Dust {
 
-/*! What moving grains knock off: all grains of a carrier followed together, from the first contact of a strong collision
- *  until none moves any more
+/*! What moving grains knock off: all grains of a carrier followed together, from the first contact of a strong
+ *  collision until none moves any more
  *
- * Grains slide, roll and swing on their carrier and fly (grain_lanes.h), and meet each other (grain_pairs.h). A grain is
- * released as long as no chain of necks joins it to the carrier; one that comes back is held again. Released grains stay
- * in the way of others until they are above the tallest one: then they have left for good.
+ * Grains slide, roll and swing on their carrier and fly (grain_lanes.h), and meet each other (grain_pairs.h). A grain
+ * is released as long as no chain of necks joins it to the carrier; one that comes back is held again. Released grains
+ * stay in the way of others until they are above the tallest one: then they have left for good.
  *
- * The collision is followed at its end, from its record (impulse_record.h); after it the carrier is taken to fly on, its
- * spin steady, as time goes by. What is there in the first step of a time, how often somebody looks and who else is
- * followed changes no result. */
+ * The collision is followed at its end, from its record (impulse_record.h); after it the carrier is taken to fly on,
+ * its spin steady, as time goes by. In how many calls that time comes changes no result. */
 class Entrainment {
  public:
   explicit Entrainment(const GrainTable &table);
@@ -43,8 +42,8 @@ class Entrainment {
   /*! A grain that has left for good: when it was released, and how it flies now, relative to the carrier's centre */
   struct Departure {
     Detachment left;
-    double height;                           //!< of its surface over the carrier's when it was released
-    double flown;                            //!< time since, or since the end of the collision if that is shorter
+    double height;                            //!< of its surface over the carrier's when it was released
+    double flown;                             //!< time since, or since the end of the collision if that is shorter
     double place[3], velocity[3], spin[3];    //!< now, in space
   };
 
@@ -97,7 +96,7 @@ class Entrainment {
 
   // of the present step
   std::vector<int> flying, changing;
-  std::vector<char> linked;    // flying grains: whether others hold them to the carrier
+  std::vector<char> linked;                // flying grains: whether others hold them to the carrier
   std::vector<GrainPairs::Neck> chains;    // necks of two that fly
   // of the collision, as long as it is followed
   const Retrospect *past_motion;

@@ -13,13 +13,14 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 using namespace Dust;
 
 namespace {
 
-constexpr double TINY = 1.0e-200;    // squares of what moves a grain are far above it
-constexpr double NEW_NECK = 0.87358046473629888;      // y at the overlap 0, (2/3)^(1/3)
+constexpr double TINY = 1.0e-200;                       // squares of what moves a grain are far above it
+constexpr double NEW_NECK = 0.87358046473629888;        // y at the overlap 0, (2/3)^(1/3)
 constexpr double MIN_Y = 1.02 * 0.55032120814910446;    // the branch ends at 6^(-1/3), where its slope has no bound
 
 // one grain, named as in grain_lanes.h
@@ -57,9 +58,9 @@ DUST_IN_LANES Branch follow_branch(double overlap, double y)
 }
 
 struct Contact {
-  double pressure;     // 2 c + c F: times mu_f, the limit of friction
-  double rolling;      // s
-  double dv;           // of v_n over the step
+  double pressure;    // 2 c + c F: times mu_f, the limit of friction
+  double rolling;     // s
+  double dv;          // of v_n over the step
 };
 
 // outward: all that pulls along n, but for the contact itself
@@ -71,8 +72,8 @@ DUST_IN_LANES Contact normal_motion(State &s, const Fixed &g, const Step &step, 
   const double slope = branch.slope > 0.0 ? branch.slope : 0.0;
   const double stiffness = g.hold * g.inv_breaking_gap * slope, h = step.h;
   s.y = pick(s.held, y, NEW_NECK);
-  const double dv = h * (outward + s.held * (force - drag * vn)) /
-      (1.0 + s.held * (0.5 * h * drag + 0.25 * h * h * stiffness));
+  const double dv =
+      h * (outward + s.held * (force - drag * vn)) / (1.0 + s.held * (0.5 * h * drag + 0.25 * h * h * stiffness));
   return {s.held * std::fabs(2.0 * g.hold + force), s.held * g.rolling * y3, dv};
 }
 
@@ -123,8 +124,8 @@ DUST_IN_LANES double is_calm(const State &s, const Fixed &g, const Step &step)
   const Vector vt = s.v - vn * s.n, slip = vt - g.radius * cross(s.spin, s.n);
   constexpr double LITTLE = 1.0e-3;    // of the energy that moves the pivot
   const double enough = rocking * step.theta * step.theta;
-  return is_below(dot(vt, vt) + rocking * dot(s.psi, s.psi), 1.001 * enough) * is_below(dot(slip, slip), LITTLE * enough) *
-      is_below(vn * vn, LITTLE * g.hold / g.inv_breaking_gap);
+  return is_below(dot(vt, vt) + rocking * dot(s.psi, s.psi), 1.001 * enough) *
+         is_below(dot(slip, slip), LITTLE * enough) * is_below(vn * vn, LITTLE * g.hold / g.inv_breaking_gap);
 }
 
 }    // namespace
@@ -290,13 +291,8 @@ DUST_LANES static double advance(GrainLanes::Block &b, const Step &step, double 
 void GrainLanes::advance(const CarrierStep &carrier, bool settle)
 {
   const double *a = carrier.motion.acceleration, *w = carrier.motion.spin, *alpha = carrier.motion.angular_acceleration;
-  const Step step = {carrier.h,
-                     1.0 / carrier.h,
-                     {a[0], a[1], a[2]},
-                     {w[0], w[1], w[2]},
-                     {alpha[0], alpha[1], alpha[2]},
-                     friction,
-                     theta_crit};
+  const Step step = {carrier.h, 1.0 / carrier.h, {a[0], a[1], a[2]}, {w[0], w[1], w[2]}, {alpha[0], alpha[1], alpha[2]},
+                     friction,  theta_crit};
   double fastest2 = 0.0;
   for (size_t k = 0; k < blocks.size(); k++) {
     if (!blocks[k].busy) continue;

@@ -34,22 +34,22 @@ struct CarrierStep {
  *
  * F(z) is the force of the JKR branch in F_c (jkr.h): the neck breaks at z = delta_c, and forms again at z = 0.
  *
- * A step is a leapfrog: positions stand in the middle of steps, all of one length in a row, velocities at their ends. Friction is the one that ends
- * the slip within the step, or its limit; what the contact's spring and damper change during the step is taken along
- * their slopes (the implicit midpoint rule), so that no contact is too stiff for a step. Held grains keep their
- * distance exactly, flying ones go straight. A grain's step depends on no other grain's: how they are put side by side
- * changes no result. */
+ * A step is a leapfrog: positions stand in the middle of steps, all of one length in a row, velocities at their ends.
+ * Friction is the one that ends the slip within the step, or its limit; what the contact's spring and damper change
+ * during the step is taken along their slopes (the implicit midpoint rule), so that no contact is too stiff for a step.
+ * Held grains keep their distance exactly, flying ones go straight. A grain's step depends on no other grain's: how
+ * they are put side by side changes no result. */
 class GrainLanes {
  public:
   static constexpr int WIDTH = 8;    // side by side, for the compiler's vectors
 
   /*! What is kept of a grain */
   struct Grain {
-    double n[3], gap;      //!< z
-    double v[3], spin[3];  //!< v, Omega
-    double psi[3], y;      //!< rolling angle, sqrt(a/a0)
-    double held;           //!< 1 as long as it has a neck to the carrier, then 0
-    double awake;          //!< 1, or 0 if it is left out: it rests, or is not there
+    double n[3], gap;        //!< z
+    double v[3], spin[3];    //!< v, Omega
+    double psi[3], y;        //!< rolling angle, sqrt(a/a0)
+    double held;             //!< 1 as long as it has a neck to the carrier, then 0
+    double awake;            //!< 1, or 0 if it is left out: it rests, or is not there
   };
 
   /*! All grains at rest in their contacts, without a load, and none awake
@@ -132,7 +132,7 @@ class GrainLanes {
   double friction, theta_crit;
   std::vector<Block> blocks;
   std::vector<int> slots, bits;    // where a grain is, WIDTH to a block; which grain is there
-  std::vector<double> places;    // four numbers a grain, the last one its radius
+  std::vector<double> places;      // four numbers a grain, the last one its radius
   double fastest = 0.0;
 
   void show_places(const Block &block, const int *bits_of_block);

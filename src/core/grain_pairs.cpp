@@ -25,7 +25,8 @@ GrainPairs::GrainPairs(const GrainTable &grains, double zeta, double softening) 
   // neighbours within a mean diameter: some steps pass until a grain that flies has come half as far
   skin = 2.0 * mean;
   cell = 2.0 * mean + skin;
-  const double largest = effective_radius(table.max_shell() - table.carrier_radius(), table.max_shell() - table.carrier_radius());
+  const double largest =
+      effective_radius(table.max_shell() - table.carrier_radius(), table.max_shell() - table.carrier_radius());
   longest_neck = breaking_gap(equilibrium_contact_radius(gamma, largest, modulus), largest);
   far = 2.0 * table.max_shell() - table.carrier_radius();
   travelled = skin;
@@ -113,7 +114,9 @@ bool GrainPairs::touch(GrainLanes &grains, const Pair &pair, const double *r, do
   const double closing = dot(u, n);
   for (int d = 0; d < 3; d++) u[d] -= closing * n[d];
 
-  const double part = overlap / gap, x = jkr_contact_radius(part, part > 0.0 ? std::sqrt(part / (2.0 * ROOT_6)) + 0.5 : 0.7), y3 = x * std::sqrt(x), force = hold * jkr_force(x);
+  const double part = overlap / gap,
+               x = jkr_contact_radius(part, part > 0.0 ? std::sqrt(part / (2.0 * ROOT_6)) + 0.5 : 0.7),
+               y3 = x * std::sqrt(x), force = hold * jkr_force(x);
   constexpr double LEAST = 0.1;    // the slope of the branch has no bound at its end, nor its sign a meaning there
   const double slope = (24.0 * y3 - 12.0) * x / (ROOT_6 * std::max(8.0 * y3 - 4.0 / 3.0, LEAST));
   const double stiffness = hold / gap * std::max(slope, LEAST);
@@ -121,8 +124,8 @@ bool GrainPairs::touch(GrainLanes &grains, const Pair &pair, const double *r, do
   const double eta = 2.0 * damping * std::sqrt(1.2 * hard_modulus * hard_a0 / me) / hard_a0;
   const double c = std::min(eta * me * x * a0, 2.0 * std::sqrt(stiffness * me));
   const double normal = (force + c * closing) / (1.0 + (0.5 * c * h + 0.25 * stiffness * h * h) / me);
-  const double slip = std::sqrt(dot(u, u)), most = std::min(table.material().friction * std::fabs(force + 2.0 * hold),
-                                                            me * slip / (7.0 * h));
+  const double slip = std::sqrt(dot(u, u)),
+               most = std::min(table.material().friction * std::fabs(force + 2.0 * hold), me * slip / (7.0 * h));
   const double rub = slip > 0.0 ? most / slip : 0.0;
 
   double f[3], torque[3];    // on i; the torque per lever, the same on both

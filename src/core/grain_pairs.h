@@ -8,15 +8,16 @@
 #include "grain_lanes.h"
 #include "grain_table.h"
 
+#include <utility>
 #include <vector>
 
 namespace Dust {
 
 /*! Contacts of the grains of a carrier with each other
  *
- * JKR with their own surface energy (jkr.h), from the overlap 0 to where the neck breaks, with a modulus that is S times
- * softer: what happens in a contact is over before anything else has moved much, and so it may take longer. Damping and
- * friction, no rolling resistance, no attraction without a neck:
+ * JKR with their own surface energy (jkr.h), from the overlap 0 to where the neck breaks, with a modulus that is S
+ * times softer: what happens in a contact is over before anything else has moved much, and so it may take longer.
+ * Damping and friction, no rolling resistance, no attraction without a neck:
  *
  *   F_n = F(delta) - c v_n,    c = min(eta m_e a, 2 sqrt(k m_e)),    eta = S^(-3/5) 2 zeta sqrt(k0/m_e)/a0
  *   |F_t| <= mu |F + 2 F_c|, and half of what ends the slip of two spheres in a step

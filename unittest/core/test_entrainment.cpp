@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 using namespace Dust;
@@ -106,7 +107,8 @@ GrainTable dense(double softening = 100.0)
 // far from each other, none is knocked off, and all leave that leave alone: but those on the very edge
 TEST(Entrainment, AloneTheyDoAsAlone)
 {
-  const GrainTable table(place_monolayer(RP, RD, 0.01, BareCap{0.4, {0.0, 0.0, -1.0}}, 5), meeting(), meeting_criteria());
+  const GrainTable table(place_monolayer(RP, RD, 0.01, BareCap{0.4, {0.0, 0.0, -1.0}}, 5), meeting(),
+                         meeting_criteria());
   for (const double dv : {3.0, 8.0, 13.0, 20.0}) {
     Impact impact(table, dv);
     const Followed found = follow(table, impact);
@@ -124,8 +126,8 @@ TEST(Entrainment, AloneTheyDoAsAlone)
   }
 }
 
-// a coarse grain, which adhesion brakes less, runs into a fine one on its way: the line of centres is inclined, and lifts
-// it. Alone both stay
+// a coarse grain, which adhesion brakes less, runs into a fine one on its way: the line of centres is inclined, and
+// lifts it. Alone both stay
 TEST(Entrainment, OneKnocksTheOtherOff)
 {
   const GrainTable two(on_circle({0.8, 0.8 + 25.0e-6 / RP}, {14.0e-6, 5.0e-6}), meeting(), meeting_criteria());
@@ -176,7 +178,8 @@ TEST(Entrainment, HowItIsAskedChangesNothing)
 // what a departure says of its moment agrees with where the grain is in the end, if it has met nothing since
 TEST(Entrainment, DeparturesFlyStraight)
 {
-  const GrainTable table(place_monolayer(RP, RD, 0.01, BareCap{0.4, {0.0, 0.0, -1.0}}, 5), meeting(), meeting_criteria());
+  const GrainTable table(place_monolayer(RP, RD, 0.01, BareCap{0.4, {0.0, 0.0, -1.0}}, 5), meeting(),
+                         meeting_criteria());
   Impact impact(table, 13.0);
   const Followed found = follow(table, impact);
   ASSERT_GT(found.departures.size(), 50u);
@@ -212,7 +215,7 @@ TEST(Entrainment, SofteningAndStepHardlyMatter)
   };
   const double usual = share(100.0, 10.0e-9);
   EXPECT_GT(usual, 0.6);
-  for (const auto &[softening, step] : {std::pair(30.0, 10.0e-9), std::pair(300.0, 10.0e-9), std::pair(100.0, 5.0e-9),
-                                        std::pair(100.0, 20.0e-9)})
+  for (const auto &[softening, step] :
+       {std::pair(30.0, 10.0e-9), std::pair(300.0, 10.0e-9), std::pair(100.0, 5.0e-9), std::pair(100.0, 20.0e-9)})
     EXPECT_NEAR(share(softening, step), usual, 0.012) << softening << " " << step;
 }

@@ -79,7 +79,7 @@ def test_the_drum_drags_at_the_speed_of_its_wall(tmp_path):
         _, x, _, z, radius, vx, _, vz, _ = map(float, line.split())
         distance = (x * x + z * z) ** 0.5
         if 10e-3 - distance < 1.02 * radius:
-            speeds.append((z * vx - x * vz) / distance)    # along the wall, as it turns
+            speeds.append((z * vx - x * vz) / distance)  # along the wall, as it turns
     assert len(speeds) > 20
     assert max(speeds) < 1.5 * wall
     assert sorted(speeds)[len(speeds) // 2] == pytest.approx(wall * 9.25 / 10, rel=0.4)

@@ -53,7 +53,9 @@ def test_the_deck_ends_when_no_grain_is_followed(tmp_path):
     text, curve = meet(tmp_path, coverage="0.05")
     until = float(re.search(r"followed until ([\d.]+) us", text)[1])
     assert 60 < until < 150
-    counts = re.search(r"grains off: (\d+) of \d+: south (\d+), north (\d+); normal (\d+), tangential (\d+), knocked off (\d+)", text)
+    counts = re.search(
+        r"grains off: (\d+) of \d+: south (\d+), north (\d+); normal (\d+), tangential (\d+), knocked off (\d+)", text
+    )
     off, south, north, normal, tangential, knocked = map(int, counts.groups())
     assert off == south + north == normal + tangential + knocked
     assert knocked > 100

@@ -182,7 +182,7 @@ def test_inertia_from_motion_on_other_ranks_and_after_a_restart(one_rank, tmp_pa
     assert one[1].splitlines()[-1].split()[:6] == one_rank[1].splitlines()[-1].split()[:6]
 
 
-# a dense layer of many sizes whose grains knock others off, while carriers cross borders and after they have left the wall
+# a dense layer of many sizes whose grains knock others off, while carriers cross borders and after they have left
 MEETING = {
     "tangential": "integrate",
     "dust": "texture monolayer 30e-6 coverage 0.2 seed 1 bare 0.6 distribution lognormal 30e-6 1.5",

@@ -17,8 +17,9 @@ LMP = BUILD / "bin" / "lmp"
 LMP_DUST = BUILD / "bin" / "lmp-dust"
 PLUGIN = BUILD / "plugin" / "dustplugin.so"
 PREFIX = LMP.resolve().parents[1]
-SURFACES = (Path(re.findall(r"^LAMMPS_SOURCE_DIR:PATH=(.*)", (BUILD / "CMakeCache.txt").read_text(), re.M)[0])
-            / "src/GRANSURF").is_dir()  # of triangles: since 4Jul2026
+SURFACES = (
+    Path(re.findall(r"^LAMMPS_SOURCE_DIR:PATH=(.*)", (BUILD / "CMakeCache.txt").read_text(), re.M)[0]) / "src/GRANSURF"
+).is_dir()  # of triangles: since 4Jul2026
 DECKS = sorted(deck for deck in (ROOT / "lammps-inputs").glob("in.*") if SURFACES or deck.name != "in.chute")
 
 # two spheres that touch and bounce on a wall: pair and wall contacts with the damping, oblique
@@ -155,9 +156,7 @@ def test_decks_give_the_same_numbers_in_both(tmp_path, deck):
         assert result.returncode == 0, result.stdout
         header = next(line.split() for line in result.stdout.splitlines() if line.split()[:1] == ["Step"])
         times = [i for i, word in enumerate(header) if word in ("CPU", "S/CPU", "Elapsed")]
-        rows = [
-            [word for i, word in enumerate(row.split()) if i not in times] for row in thermo(result.stdout)
-        ]
+        rows = [[word for i, word in enumerate(row.split()) if i not in times] for row in thermo(result.stdout)]
         files = {file.name: file.read_bytes() for file in sorted(folder.iterdir())}
         lines = result.stdout.splitlines()
         last_words = [line for line in lines if re.match("dispersion ratio|carrier|grains off", line)]
@@ -206,10 +205,10 @@ def test_resolved_impact_with_many_sizes_and_spin(tmp_path):
     assert "WARNING" not in result.stdout
     off, grains = map(int, re.search(r"^grains off: (\d+) of (\d+)", result.stdout, re.MULTILINE).groups())
     ratio = float(re.search(r"^dispersion ratio (\S+):", result.stdout, re.MULTILINE)[1])
-    assert 0 < off / grains < ratio < 1    # of the mass more, as large grains leave first
+    assert 0 < off / grains < ratio < 1  # of the mass more, as large grains leave first
     vx, spin = map(float, re.search(r"^carrier: (\S+) .* spin (\S+) rad/s", result.stdout, re.MULTILINE).groups())
-    assert 0.9 < vx < 1.1    # 2/7 of 3 m/s if it just rolled on; Mindlin's spring gives some more
-    assert (4000 - spin) * 0.75e-3 * 2 / 5 == pytest.approx(vx, rel=0.005)    # the grains are 0.1 % of the mass
+    assert 0.9 < vx < 1.1  # 2/7 of 3 m/s if it just rolled on; Mindlin's spring gives some more
+    assert (4000 - spin) * 0.75e-3 * 2 / 5 == pytest.approx(vx, rel=0.005)  # the grains are 0.1 % of the mass
     classes = re.findall(r"(\d+) atoms in group class\d+", result.stdout)
     assert len(classes) == 8 and sum(map(int, classes)) == grains
 
@@ -220,7 +219,7 @@ def test_resolved_collision_conserves_momentum(tmp_path):
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
     assert result.returncode == 0, result.stdout
     sums = re.search(r"^sum of all momenta in those of a carrier: (.*)", result.stdout, re.MULTILINE)[1]
-    assert all(abs(float(value)) < 1e-12 for value in sums.split())    # round-off of 3000 steps
+    assert all(abs(float(value)) < 1e-12 for value in sums.split())  # round-off of 3000 steps
     first, second = (
         [float(word) for word in words]
         for words in re.findall(r"^carrier \d: (\S+) \S+ (\S+) m/s, spin (\S+)", result.stdout, re.MULTILINE)

@@ -117,8 +117,7 @@ TEST(FixDustDetachMeet, EqualGrainsAreAsWithout)
   EXPECT_NEAR(ratio(MEET, 12.0), ratio("tangential integrate", 12.0), 0.003);
 }
 
-// the carrier loses the mass that is counted at every step, and in the end momentum and mass are those of before and what
-// the wall has given
+// the carrier loses the mass that is counted, at every step
 TEST(FixDustDetachMeet, MassIsKeptAtEveryStep)
 {
   Deck deck;
@@ -141,10 +140,11 @@ TEST(FixDustDetachMeet, EmittedGrainsCarryWhatTheCarrierLoses)
        " zplane 0.0 NULL");
   const std::string soft =
       "hertz/material 1e-9 0.5 0.3 tangential linear_nohistory 0.0 0.0 damping coeff_restitution/limited\n";
-  deck("neighbor 4e-5 multi\ncomm_modify mode multi vel yes\nneigh_modify one 20000 page 400000\npair_coeff 1 2 " + soft +
-       "pair_coeff 2 2 " + soft);
+  deck("neighbor 4e-5 multi\ncomm_modify mode multi vel yes\nneigh_modify one 20000 page 400000\npair_coeff 1 2 " +
+       soft + "pair_coeff 2 2 " + soft);
   // sparse: few grains to emit, and room for all of them
-  deck("fix dust carriers dust/detach texture monolayer 60e-6 coverage 0.1 seed 3 bare 1.0 distribution lognormal 60e-6 1.5 " +
+  deck("fix dust carriers dust/detach texture monolayer 60e-6 coverage 0.1 seed 3 bare 1.0 distribution lognormal "
+       "60e-6 1.5 " +
        MEET + "emit 2");
   deck("thermo_modify lost ignore\nrun 5000 post no");    // in the collision, and after it
   const auto momentum = [&] {
@@ -170,7 +170,8 @@ TEST(FixDustDetachMeet, EmittedGrainsCarryWhatTheCarrierLoses)
   EXPECT_NEAR(mass(deck) + detached, BARE + deck.global(DetachVector::INITIAL_MASS + 1), 1e-12 * BARE);
 }
 
-// the next collision that could move a grain ends the following; what still moves is held where it was. A weak one does not
+// the next collision that could move a grain ends the following; what still moves is held where it was. A weak one does
+// not
 TEST(FixDustDetachMeet, TheNextCollisionEndsIt)
 {
   for (const bool strong : {true, false}) {
@@ -179,7 +180,8 @@ TEST(FixDustDetachMeet, TheNextCollisionEndsIt)
     deck.carrier(0.0, 0.0, START, 0.0, 0.0, -8.0);
     deck.wall_and_motion();
     // a second wall, above, that it meets after 10 us
-    const std::string soft = "hertz/material 1e4 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping coeff_restitution/limited";
+    const std::string soft =
+        "hertz/material 1e4 0.7 0.3 tangential mindlin NULL 0.0 0.05 damping coeff_restitution/limited";
     deck("fix above all wall/gran granular " + (strong ? contact(0.7) : soft) + " zplane NULL 0.00154");
     deck("fix dust all dust/detach " + DENSE + MEET);
     deck("run 9000 post no");
@@ -226,7 +228,8 @@ TEST(FixDustDetachMeet, TwoCarriersTwoSizesAndSpread)
   Deck deck;
   deck("units si\natom_style sphere\nboundary p p p\nnewton off\ncomm_modify vel yes\n"
        "region box block -0.01 0.01 -0.01 0.01 -0.01 0.01\ncreate_box 2 box\ntimestep 1e-9\nneighbor 3e-4 bin\n"
-       "pair_style granular\npair_coeff * * " + contact(0.7));
+       "pair_style granular\npair_coeff * * " +
+       contact(0.7));
   deck.carrier(0.0, 0.3e-3, 0.70e-3, 0.0, 0.0, -6.0);
   deck.carrier(0.0, 0.0, -0.70e-3, 0.0, 0.0, 6.0);
   deck("set atom 2 diameter 1.2e-3 density 7700\nfix move all nve/sphere");

@@ -199,12 +199,13 @@ _SAID = ("carrier", "carrier_diameter", "wall", "grain", "grain_diameter", "cove
 def fixed_words(results: Sequence[Result]) -> str:
     """The parameters that are the same in all rows, for the foot of a figure; others at their default are left out."""
     default = Impact(speed=1.0).values()
+    always = _SAID if is_timestep_chosen(results) else (*_SAID, "timestep")
     said = []
-    for name in _SAID + tuple(name for name in PARAMETERS if name not in _SAID):
+    for name in (*always, *(name for name in PARAMETERS if name not in always)):
         values = {getattr(row, name) for row in results}
         value = next(iter(values))
         about = ABOUT[name]
-        if len(values) > 1 or not about.symbol or (name not in _SAID and (about.follows or value == default[name])):
+        if len(values) > 1 or not about.symbol or (name not in always and (about.follows or value == default[name])):
             continue
         said.append(about.words(value))
     half = -(-len(said) // 2) if len(said) > 8 else len(said)

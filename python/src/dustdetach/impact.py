@@ -243,7 +243,9 @@ class Impact(Parameters):
         if not self.meet:
             return
         if self.method == "resolved":
-            raise InvalidInput("--meet: true is for the functions, in a resolved run grains always meet; allowed: false")
+            raise InvalidInput(
+                "--meet: true is for the functions, in a resolved run grains always meet; allowed: false"
+            )
         if self.tangential != "integrate":
             raise InvalidInput(
                 f"--meet: true does nothing with --tangential {self.tangential}, which follows no grain; allowed: "

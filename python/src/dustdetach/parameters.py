@@ -212,7 +212,8 @@ class Parameters:
         ),
     )
     grain_hamaker: float = field(
-        default=FOLLOWS, metadata=_hamaker("two grains", "that of the material --grain", "hamaker_grains", " and with --meet")
+        default=FOLLOWS,
+        metadata=_hamaker("two grains", "that of the material --grain", "hamaker_grains", " and with --meet"),
     )
     z0: float = field(
         default=0.4e-9,

@@ -146,7 +146,8 @@ def _draw_fates(impact: Impact, path: Path, folder: Path, watch: Watch | None) -
     with _written_by_us():
         texture = read_texture(grains)
         fates = read_fates(events, len(texture.diameters))
-        if np.count_nonzero(fates) != round(result.dispersion_ratio * result.grains):
+        masses = texture.diameters**3
+        if abs(np.sum(masses[fates != 0]) / np.sum(masses) - result.dispersion_ratio) > 1e-6:
             raise InvalidInput(f"{events}: not all detachments are there")
     scene = _carrier_scene(texture, fates, FATES)
     _render(scene, image)

@@ -39,7 +39,16 @@ LINE_STYLES: list[Any] = ["solid", "dashed", "dotted", "dashdot", (0, (5, 1, 1, 
 
 #: columns that may be drawn upwards
 DRAWN = (
-    *("dispersion_ratio", "north", "south", "normal", "tangential_mode", "knocked", "contact_time", "peak_acceleration"),
+    *(
+        "dispersion_ratio",
+        "north",
+        "south",
+        "normal",
+        "tangential_mode",
+        "knocked",
+        "contact_time",
+        "peak_acceleration",
+    ),
     *("restitution_realised", "grains"),
 )
 

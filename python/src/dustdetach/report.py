@@ -37,7 +37,17 @@ MOST_CARRIERS, MOST_GRAINS = 8, 100_000
 MOST_ROWS = 3000
 
 #: columns that are shown at first, besides the parameters that vary
-SHOWN = ("dispersion_ratio", "north", "south", "normal", "tangential_mode", "knocked", "contact_time", "peak_acceleration", "end")
+SHOWN = (
+    "dispersion_ratio",
+    "north",
+    "south",
+    "normal",
+    "tangential_mode",
+    "knocked",
+    "contact_time",
+    "peak_acceleration",
+    "end",
+)
 
 
 def write_report(folder: str | Path, out: str | Path | None = None) -> Path:
