@@ -30,7 +30,7 @@ BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
 LMP = BUILD / "bin/lmp-dust"
 DUST = (
     "fix dust all dust/detach texture monolayer 20e-6 coverage 0.2 seed 1 orientation random 1 stiffen 1000 "
-    "rows no counts no\n"
+    "rows no\n"
 )
 GAS = """units si
 atom_style sphere
