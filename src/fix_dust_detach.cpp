@@ -25,7 +25,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double RESTART_FORMAT = 3.0;
+static constexpr double RESTART_FORMAT = 4.0;
 static constexpr double NOT_COUNTED = -1.0;    // no number of grains
 
 /* ---------------------------------------------------------------------- */
