@@ -11,6 +11,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <utility>
 
 using namespace LAMMPS_NS;
 

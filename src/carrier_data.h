@@ -37,8 +37,8 @@ class CarrierData : protected Pointers {
   // grains that meet: of carriers whose grains are followed after a collision
   std::vector<std::unique_ptr<Dust::Entrainment>> together;
 
-  // rotation: carriers turn; orientations: they do, or do not start all alike; motion: numbers of before[i]; meet: grains
-  // meet each other
+  // rotation: carriers turn; orientations: they do, or do not start all alike; motion: numbers of before[i];
+  // meet: grains meet each other
   CarrierData(class LAMMPS *, bool rotation, bool orientations, int motion, bool meet);
   ~CarrierData() override;
   CarrierData(const CarrierData &) = delete;
