@@ -1,14 +1,16 @@
-"""What fix dust/detach costs in beds: share of the loop time in in.drum, cost per carrier from a thousand to a
-million of them, memory per carrier, two ranks against one, and carriers of many sizes.
+"""What fix dust/detach costs in beds: share of the loop in a settled bed and in in.drum, cost per carrier from a
+thousand to a million of them, memory per carrier, two ranks against one, and carriers of many sizes.
 
-    . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts drum,sizes,ranks,scaling] [--out FILE]
+    . build/environment; build/venv/bin/python benchmarks/bed_cost.py [--parts bed,drum,sizes,ranks,scaling]
+        [--bed FILE] [--out FILE]
 
-Segments with and without the fix follow each other in one run, which does not depend on the fix; the fastest of each,
-the least disturbed ones, are compared. A segment with the fix starts when the fix has been there for 60 steps. Drum:
-in.drum, filled, settled and turned for a while. Sizes: the same with carriers of 1 to 2 mm in 15 classes, and all of
-them in one. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a
-direction, no losses, contacts softened 1000 times), in which every carrier is in the same state whatever their
-number. Memory: by how much the largest resident size of the process grows with the fix. Ranks: the gas. Other work on
+Segments with and without the fix follow each other in one run, which does not depend on the fix; medians of each are
+compared, in processor time. A segment with the fix starts when the fix has been there for 60 steps. Bed: the settled
+bed of pair_cost.py (`--bed FILE` is the one there), with the fix's defaults, and with counts yes. Drum: in.drum with
+5000 carriers, filled, settled and turned for a while. Sizes: in.drum with carriers of 1 to 2 mm in 15 classes, and all
+of them in one. Scaling: a dense granular gas (volume fraction 0.4, 0.1 m/s a direction, no losses, contacts softened
+1000 times), in which every carrier is in the same state whatever their number. Memory: by how much the largest resident
+size of the process grows with the fix. Ranks: the gas. Other work on
 the machine disturbs all this.
 """
 
@@ -23,14 +25,14 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+import pair_cost
 from machine import description
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
 LMP = BUILD / "bin/lmp-dust"
 DUST = (
-    "fix dust all dust/detach texture monolayer 20e-6 coverage 0.2 seed 1 orientation random 1 stiffen 1000 "
-    "rows no counts no\n"
+    "fix dust all dust/detach texture monolayer 20e-6 coverage 0.2 seed 1 orientation random 1 stiffen 1000 rows no\n"
 )
 GAS = """units si
 atom_style sphere
@@ -56,7 +58,7 @@ SIZES = {1_000: (10, 10, 10), 10_000: (20, 25, 20), 100_000: (50, 50, 40), 1_000
 
 
 def run(deck: str, processes: int = 1) -> tuple[list[float], list[float]]:
-    """Times of loops in seconds, and what `info memory` said of the largest resident size, in bytes."""
+    """Processor seconds of loops, mean of the ranks, and the largest resident sizes by `info memory`, in bytes."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "in.deck").write_text(deck)
         command = [str(LMP), "-in", "in.deck", "-log", "none"]
@@ -66,7 +68,8 @@ def run(deck: str, processes: int = 1) -> tuple[list[float], list[float]]:
         done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment, check=False)
     if done.returncode:
         sys.exit(f"{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
-    times = [float(loop) for loop in re.findall(r"^Loop time of (\S+)", done.stdout, re.MULTILINE)]
+    loops = re.findall(r"^Loop time of (\S+)[^%]*?^(\S+)% CPU use", done.stdout, re.MULTILINE)
+    times = [float(loop) * float(use) / 100 for loop, use in loops]
     return times, [
         2.0**20 * float(size)
         for size in re.findall(r"^Maximum resident set size: (\S+) Mbyte", done.stdout, re.MULTILINE)
@@ -79,13 +82,11 @@ def compare(deck: str, fix: str, unfix: str, pairs: int, steps: int, carriers: i
     segments = f"info memory\n{with_fix}info memory\n{without}{(pairs - 1) * (with_fix + without)}"
     times, (before, after) = run(deck + segments)
     times = times[-3 * pairs :]
-    fastest = {"with": min(times[1::3]), "without": min(times[2::3])}
-    row = {
-        f"nanoseconds_per_carrier_and_step_{which}": 1e9 * time / steps / carriers for which, time in fastest.items()
-    }
-    share = [(a - b) / a for a, b in zip(times[1::3], times[2::3], strict=True)]
+    middle = {"with": statistics.median(times[1::3]), "without": statistics.median(times[2::3])}
+    row = {f"nanoseconds_per_carrier_and_step_{which}": 1e9 * time / steps / carriers for which, time in middle.items()}
+    share = [(a - b) / a for a, b in zip(times[1::3], times[2::3], strict=True) if a > 0.0]
     return row | {
-        "fix_share_of_loop": 1 - fastest["without"] / fastest["with"],
+        "fix_share_of_loop": 1 - middle["without"] / middle["with"],
         "median_share_of_a_pair": statistics.median(share),
         "least_and_largest_share_of_a_pair": [min(share), max(share)],
         "bytes_per_carrier_of_lammps": before / carriers,
@@ -94,7 +95,7 @@ def compare(deck: str, fix: str, unfix: str, pairs: int, steps: int, carriers: i
     }
 
 
-def drum_costs(edit: Callable[[str], str], more: tuple[str, ...] = ("",), pairs: int = 12) -> list[dict[str, float]]:
+def drum_costs(edit: Callable[[str], str], more: tuple[str, ...] = ("",), pairs: int = 7) -> list[dict[str, float]]:
     """in.drum, edited, for each of `more` keywords of the fix."""
     text = edit((ROOT / "lammps-inputs/in.drum").read_text())
     fix = re.search(r"^fix +dust (.*&\n)*.*\n", text, re.MULTILINE)[0]
@@ -102,16 +103,43 @@ def drum_costs(edit: Callable[[str], str], more: tuple[str, ...] = ("",), pairs:
     carriers = int(re.search(r"^variable carriers +index (\d+)", text, re.MULTILINE)[1])
     text = re.sub(r"^plugin load.*\n", "", text.replace(fix, ""), flags=re.MULTILINE)
     deck = text.split('if "$(is_defined(variable,dump))"')[0]
-    deck = re.sub(r" f_dust\S*", "", deck) + "thermo 1000000\nrun 10000\n"
+    deck = re.sub(r" f_dust\S*", "", deck) + "thermo 1000000\nrun 3000\n"
     return [
         # gravity stands after the fix
-        compare(deck, f"unfix fall\n{fix.rstrip()} {words}\n{fall}", "unfix dust\n", pairs, 400, carriers)
+        compare(deck, f"unfix fall\n{fix.rstrip()} {words}\n{fall}", "unfix dust\n", pairs, 200, carriers)
         for words in more
     ]
 
 
-def drum() -> dict[str, float]:
-    return drum_costs(lambda deck: deck)[0]
+COUNTS = ("counts no", "counts yes")
+
+
+def drum() -> dict[str, dict[str, float]]:
+    def edit(deck: str) -> str:
+        for name, value in {"carriers": "5000", "drum": "0.06", "settle": "0.02"}.items():
+            deck = re.sub(rf"^(variable {name} +index) \S+", rf"\1 {value}", deck, flags=re.MULTILINE)
+        return deck
+
+    return dict(zip(COUNTS, drum_costs(edit, COUNTS), strict=True))
+
+
+def bed(file: Path | None) -> dict[str, dict[str, float]]:
+    with tempfile.TemporaryDirectory() as folder:
+        data = (file or Path(folder) / "bed.data").resolve()
+        if not data.exists():
+            run(pair_cost.SETTLE.replace("bed.data", str(data)))
+        model = pair_cost.OURS.format(e=0.5)
+        rest = pair_cost.MOTION.format(every=1000000, steps=60)
+        deck = (
+            f"{pair_cost.BOX}\nread_data {data}\nneighbor 3.75e-4 bin\npair_style granular\npair_coeff * * {model}\n"
+            f"fix floor all wall/gran granular {model} zplane 0.0 NULL\n{rest}"
+        )
+        fix = DUST.replace(" rows no", "").rstrip()
+        down = "fix down all gravity 9.81 vector 0 0 -1\n"  # stands after the fix
+        return {
+            words: compare(deck, f"unfix down\n{fix} {words}\n{down}", "unfix dust\n", 7, 100, pair_cost.CARRIERS)
+            for words in COUNTS
+        }
 
 
 def sizes() -> dict[str, float | dict[str, float]]:
@@ -140,21 +168,23 @@ def ranks(repeats: int = 4) -> dict[str, float]:
 def scaling() -> dict[str, dict[str, float]]:
     result = {}
     for carriers, (x, y, z) in SIZES.items():
-        pairs = min(100, max(3, 300_000 // carriers))
-        result[f"{carriers}"] = compare(GAS.format(x=x, y=y, z=z, warm=60), DUST, "unfix dust\n", pairs, 60, carriers)
+        steps, pairs = 30, min(100, max(3, 900_000 // carriers))  # the fix is as old in all of them
+        deck = GAS.format(x=x, y=y, z=z, warm=400)  # at first nothing touches
+        result[f"{carriers}"] = compare(deck, DUST, "unfix dust\n", pairs, steps, carriers)
         print(carriers, json.dumps(result[f"{carriers}"]), flush=True)
     return result
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--parts", default="drum,sizes,ranks,scaling", help="the others keep their results in FILE")
+    parser.add_argument("--parts", default="bed,drum,sizes,ranks,scaling", help="the others keep their results in FILE")
+    parser.add_argument("--bed", type=Path, help="where the carriers of the settled bed lie; written if absent")
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
     result: dict = json.loads(args.out.read_text()) if args.out and args.out.exists() else {}
     for part in args.parts.split(","):
-        parts = {"drum": drum, "sizes": sizes, "ranks": ranks, "scaling": scaling}
-        result[part] = {**description(LMP), **parts[part]()}
+        parts = {"bed": lambda: bed(args.bed), "drum": drum, "sizes": sizes, "ranks": ranks, "scaling": scaling}
+        result[part] = {**description(LMP), "load_average": os.getloadavg()[0], **parts[part]()}
         print(part, json.dumps(result[part]), flush=True)
         if args.out:
             args.out.write_text(json.dumps(result, indent=1) + "\n")

@@ -33,7 +33,7 @@ def deck_with(law: str, name: str, folder: Path) -> Path:
     if "tangential       index impulse" in text:
         text = text.replace("tangential       index impulse", f"tangential index {law}")
     else:
-        text = text.replace("rows no counts no", f"rows no counts no tangential {law}")
+        text = text.replace("rows no", f"rows no tangential {law}")
     if f" {law}" not in text:
         raise RuntimeError(f"{name}: no place for the law")
     path = folder / f"{name}.{law}"

@@ -149,8 +149,11 @@ std::vector<bool> CarrierData::colliding(size_t collisions) const
 
 /* ---------------------------------------------------------------------- */
 
-// numbers before the orientation, and the number of words
-int CarrierData::size(int words) const { return 6 + DetachAtom::QW + layout() % 100 + words; }
+// numbers before the orientation, it and what else is used, attached bits
+int CarrierData::size(int words) const
+{
+  return 5 + DetachAtom::QW + layout() % 100 + static_cast<int>(Dust::PackedBits::most(words));
+}
 
 void CarrierData::pack(int i, Dust::Packer &to) const
 {
@@ -163,7 +166,7 @@ void CarrierData::pack(int i, Dust::Packer &to) const
   if (orientation) to.put(&orientation[i], 1);
   if (angle) to.put(angle[i], 3);
   if (before) to.put(before[i], motion_size);
-  to.put(attached[i]);
+  to.put_bits(attached[i]);
 }
 
 void CarrierData::unpack(int i, Dust::Unpacker &from)
@@ -177,7 +180,7 @@ void CarrierData::unpack(int i, Dust::Unpacker &from)
   if (orientation) from.get(&orientation[i], 1);
   if (angle) from.get(angle[i], 3);
   if (before) from.get(before[i], motion_size);
-  from.get(attached[i]);
+  from.get_bits(attached[i]);
 }
 
 /* ---------------------------------------------------------------------- */

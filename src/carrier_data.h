@@ -59,7 +59,7 @@ class CarrierData : protected Pointers {
   std::vector<bool> colliding(size_t collisions) const;    // by number of the collision, whether a carrier has it
 
   // of a carrier; the number of its collision does not travel, 0 stands for it
-  int size(int words) const;    // with so many words of attached bits
+  int size(int words) const;    // at most, with so many words of attached bits
   // tells which are used
   int layout() const { return 100 * meet_used + motion_size + (angle_used ? 7 : orientation_used ? 4 : 0); }
   void pack(int i, Dust::Packer &) const;

@@ -25,7 +25,8 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double RESTART_FORMAT = 3.0;
+static constexpr double RESTART_FORMAT = 4.0;
+static constexpr double NOT_COUNTED = -1.0;    // no number of grains
 
 /* ---------------------------------------------------------------------- */
 
@@ -415,9 +416,11 @@ double FixDustDetach::compute_vector(int n)
   using namespace DetachVector;
   const DetachTotals t = mine.sum(world);
   const double grain_mass = coats.unit_mass();
-  const auto met = [this](Dust::Mode mode) {
-    return sum_under_way(
-        [=](const Dust::Collision &c, int i) { return c.grains_that(mode, table_of(i), carriers.attached[i].data()); });
+  const auto met = [this](double so_far, Dust::Mode mode) {
+    if (!settings.criteria.count) return NOT_COUNTED;
+    return so_far + sum_under_way([=](const Dust::Collision &c, int i) {
+             return c.grains_that(mode, table_of(i), carriers.attached[i].data());
+           });
   };
   switch (n) {
     case INITIAL_GRAINS: return t.initial;
@@ -433,8 +436,8 @@ double FixDustDetach::compute_vector(int n)
     case DETACHED_MASS: return t.weight * grain_mass;
     case INITIAL_MASS: return t.initial_weight * grain_mass;
     case COLLISIONS: return t.collisions;
-    case MET_SLIDING: return t.sliding + met(Dust::SLIDING);
-    case MET_ROLLING: return t.rolling + met(Dust::ROLLING);
+    case MET_SLIDING: return met(t.sliding, Dust::SLIDING);
+    case MET_ROLLING: return met(t.rolling, Dust::ROLLING);
     case SLIDING: return t.modes[Dust::SLIDING];
     case ROLLING: return t.modes[Dust::ROLLING];
     case KNOCKED: return t.modes[Dust::KNOCKED];

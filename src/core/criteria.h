@@ -14,7 +14,7 @@ enum Mode { NORMAL, TANGENTIAL, SLIDING, ROLLING, KNOCKED, NMODES };
 
 /*! What makes grains detach */
 struct Criteria {
-  bool count = true;       //!< grains that meet the sliding and rolling criteria
+  bool count = false;      //!< grains that meet the sliding and rolling criteria
   bool ibrahim = false;    //!< sliding and rolling detach too
   bool meet = false;       //!< grains knock others off (entrainment.h)
   //! the law of tangential lift-off, a file each (tangential_law.h)

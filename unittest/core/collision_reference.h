@@ -190,8 +190,8 @@ inline Outcome by_brute_force(const Texture &texture, const Material &m, const C
         attached = false;
       }
     }
-    out.sliding += slid;
-    out.rolling += rolled;
+    out.sliding += criteria.count && slid;
+    out.rolling += criteria.count && rolled;
     out.north += !attached && dot(n0, so_far) > 0.0;
   }
   return out;

@@ -24,6 +24,7 @@ TEST(Collision, SameGrainsAsBruteForceInTenThousandRandomCollisions)
   int left = 0, normal = 0, rear = 0, at_rest = 0;
   for (int i = 0; i < 10000; i++) {
     Criteria criteria;
+    criteria.count = i % 3 > 0;
     criteria.ibrahim = i % 4 == 3;
     criteria.tangential = i % 7 < 3 ? Criteria::IMPULSE : Criteria::ESTIMATE;
     if (i % 7 == 5) criteria.tangential = Criteria::FRICTIONLESS;
@@ -56,14 +57,16 @@ TEST(Collision, SameGrainsAsBruteForceForGrainsOfAllSizes)
   for (Grain &g : texture.grains) g.radius *= 0.2 + 0.8 * std::uniform_real_distribution<double>()(random);
   Material m = CALCITE;
   m.gamma *= 16.0;
-  const GrainTable table(texture, m, Criteria());
+  Criteria criteria;
+  criteria.count = true;
+  const GrainTable table(texture, m, criteria);
   double mass = 0.0, expected_mass = 0.0;
   for (int bit = 0; bit < table.grains(); bit++) mass += table.weight(bit) * table.mean_mass();
   for (const Grain &g : texture.grains) expected_mass += 4.0 / 3.0 * M_PI * std::pow(g.radius, 3) * m.density;
   EXPECT_NEAR(mass, expected_mass, 1.0e-12 * expected_mass);
   for (int i = 0; i < 500; i++) {
     const History h = random_history(random, i % 2);
-    expect_same(by_collision(texture, table, h), by_brute_force(texture, m, Criteria(), h));
+    expect_same(by_collision(texture, table, h), by_brute_force(texture, m, criteria, h));
     if (::testing::Test::HasFailure()) FAIL() << "collision " << i;
   }
 }
@@ -78,6 +81,7 @@ TEST(Collision, SameGrainsAsBruteForceWithASpreadOfAdhesion)
   int left = 0;
   for (int i = 0; i < 600; i++) {
     Criteria criteria;
+    criteria.count = true;
     criteria.ibrahim = i % 4 == 3;
     criteria.tangential = std::vector{Criteria::IMPULSE, Criteria::ESTIMATE, Criteria::FRICTIONLESS}[i % 3];
     const GrainTable table(texture, m, criteria);
@@ -97,6 +101,7 @@ TEST(Collision, ReferenceImpactsSameAsBruteForce)
   for (double speed : {0.3, 3.0, 8.0})
     for (bool ibrahim : {false, true}) {
       Criteria criteria;
+      criteria.count = true;
       criteria.ibrahim = ibrahim;
       const History h = straight_impact(speed, 0.2733);
       expect_same(by_collision(texture, GrainTable(texture, CALCITE, criteria), h),

@@ -230,7 +230,7 @@ class Drill:
         self.half = 30e-3 if "f" in self.boundary else 4e-3
         every = self.draw.choice((1, 50, 100000)) if self.emit else 1
         self.fix = (
-            "fix dust carriers dust/detach texture monolayer 100e-6 coverage 0.15 seed 3 stiffen 1000 "
+            "fix dust carriers dust/detach texture monolayer 100e-6 coverage 0.15 seed 3 stiffen 1000 counts yes "
             f"orientation random 5 tangential {self.draw.choice(('estimate', 'integrate'))} every {every} "
             + ("emit 2" if self.emit else "mass yes")
             + (" sizes 0" if sizes else "")

@@ -71,7 +71,7 @@ TEST(DustCoat, OtherGrainsAreOfTheSameTextureWithAnotherTable)
   set_up(deck);
   const Coat first = coat_of(deck, REFERENCE_DUST + MATERIAL);
   for (const std::string &words :
-       {MATERIAL + " tangential estimate", MATERIAL + " criteria ibrahim", MATERIAL + " counts no",
+       {MATERIAL + " tangential estimate", MATERIAL + " criteria ibrahim", MATERIAL + " counts yes",
         MATERIAL + " damping 0.5", MATERIAL + " rolling 0.2 tangential integrate",
         std::string(" density 2800 hamaker 14.633e-20 0.4e-9 elastic 75e9 0.3 210e9 0.3 friction 0.3"),
         std::string(" density 2700 hamaker 14.633e-20 0.5e-9 elastic 75e9 0.3 210e9 0.3 friction 0.3"),

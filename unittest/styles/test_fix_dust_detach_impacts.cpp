@@ -175,7 +175,7 @@ TEST(FixDustDetachImpacts, AngularAccelerationIsTorqueOverTheMomentOfInertia)
   // a carrier that slips on the wall: grains that would slide at any step, from the forces of the deck
   const std::string file = ::testing::TempDir() + "texture_of_impacts.txt";
   Deck deck;
-  set_up(deck, 0.7, 0.3, 0.0, -0.12, "tangential off write " + file);
+  set_up(deck, 0.7, 0.3, 0.0, -0.12, "tangential off counts yes write " + file);
   deck("set atom 1 omega 0 3000 0");
   const Dust::Texture texture = Dust::read_texture_file(file);
   std::remove(file.c_str());
