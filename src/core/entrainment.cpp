@@ -281,5 +281,5 @@ double Entrainment::memory_usage() const
 {
   constexpr size_t GRAIN = 4 * sizeof(char) + sizeof(Mode);
   return sizeof(*this) + double(present.size()) * GRAIN + double(moments.capacity()) * sizeof(Moment) +
-      grains.memory_usage() + pairs.memory_usage();
+         grains.memory_usage() + pairs.memory_usage();
 }

@@ -112,7 +112,7 @@ class GrainLanes {
   double memory_usage() const    //!< bytes
   {
     return double(blocks.size()) * sizeof(Block) + double(slots.size()) * 2 * sizeof(int) +
-        double(places.size()) * sizeof(double);
+           double(places.size()) * sizeof(double);
   }
 
   /*! Grains side by side */

@@ -53,7 +53,8 @@ void GrainPairs::find(const GrainLanes &grains, const std::vector<char> &present
       const double r[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]}, reach = radius + other + skin;
       if (dot(r, r) > reach * reach) return;
       const double range = radius + other + longest_neck;
-      pairs.emplace_back(std::min(i, j), std::max(i, j), std::nextafter(float(range * range), std::numeric_limits<float>::infinity()));
+      pairs.emplace_back(std::min(i, j), std::max(i, j),
+                         std::nextafter(float(range * range), std::numeric_limits<float>::infinity()));
     });
   }
   const auto before = [](const auto &a, const auto &b) {
