@@ -87,7 +87,7 @@ TEST(FixDustDetachSizes, OneFixGivesEachSizeWhatAFixOfItsOwnGives)
   const std::vector<std::string> groups = {"id 1", "id 2 4", "id 3"};
   for (const std::string words : {"", "orientation random 7", "tangential integrate", "criteria ibrahim rotation no",
                                   "mass yes", "distribution lognormal 15e-6 1.3 spread 2"}) {
-    const std::string dust = joined({"dust/detach ", REFERENCE_DUST, " every 9000 ", words});
+    const std::string dust = joined({"dust/detach ", REFERENCE_DUST, " every 9000 counts yes ", words});
     Deck one, own;
     carriers(one, sieve);
     carriers(own, sieve);
