@@ -64,7 +64,7 @@ Outcome outcome(const Preparation &prepare, const std::string &words, int steps 
 {
   Deck deck;
   prepare(deck);
-  deck("fix dust all dust/detach " + REFERENCE_DUST + " every " + std::to_string(steps) + " " + words);
+  deck("fix dust all dust/detach " + REFERENCE_DUST + " counts yes every " + std::to_string(steps) + " " + words);
   deck("run " + std::to_string(steps) + " post no");
   return {gone(deck), deck.vector()};
 }
