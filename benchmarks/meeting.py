@@ -257,7 +257,7 @@ def picture() -> None:
         axis.set_title(title, loc="left")
     handles = [Circle((0, 0), facecolor=colour, edgecolor="0.3") for colour in FATES.values()]
     axes[0].legend(handles, FATES, loc="lower right", fontsize=8, framealpha=1)
-    figure.savefig(IMAGES / "layer.png", dpi=200)
+    figure.savefig(IMAGES / "layer.png", dpi=130)
 
 
 def main() -> None:
