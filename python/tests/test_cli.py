@@ -94,6 +94,17 @@ def test_without_json_a_summary(command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_grains_that_meet(command):
+    words = (*IMPACT, "--grain-diameter", "40e-6")
+    alone, together = (
+        json.loads(command(*words, *option, "--json").stdout)
+        for option in (("--no-meet", "--tangential", "integrate"), ("--meet",))
+    )
+    assert (alone["meet"], alone["knocked"], alone["end"]) == (False, 0.0, "rebound")
+    assert (together["meet"], together["tangential"], together["end"]) == (True, "integrate", "settled")
+    assert "knocked off" in command(*words, "--meet").stdout
+
+
 def test_a_resolved_impact(command, tmp_path):
     words = (*IMPACT, "--method", "resolved", "--coverage", "0.0004")
     printed = json.loads(command(*words, "--json").stdout)
