@@ -61,28 +61,27 @@ void Entrainment::follow(const PastCollision &past, const Quaternion &axes, cons
 
 void Entrainment::follow_collision(const PastCollision &past)
 {
+  bool was_loaded = false;
   for (const Substep &part : substeps(past)) {
     const int steps = std::max(1, static_cast<int>(std::ceil(part.dt / table.step() - 1.0e-9)));
     Motion motion = {};
-    double acceleration[3], spin0[3], spin1[3];
-    frame.to_space(part.acceleration, acceleration);
+    double spin0[3], spin1[3];
+    frame.to_space(part.acceleration, motion.acceleration);
     frame.to_space(part.spin_after, spin1);
     std::copy_n(spin, 3, spin0);
+    for (int d = 0; d < 3; d++) motion.angular_acceleration[d] = (spin1[d] - spin0[d]) / part.dt;
     const double h = part.dt / steps;
     for (int k = 0; k < steps; k++) {
-      for (int d = 0; d < 3; d++) {
-        spin[d] = spin0[d] + (k + 0.5) / steps * (spin1[d] - spin0[d]);
-        motion.acceleration[d] = acceleration[d];
-        motion.angular_acceleration[d] = (spin1[d] - spin0[d]) / part.dt;
-      }
+      for (int d = 0; d < 3; d++) spin[d] = spin0[d] + (k + 0.5) / steps * (spin1[d] - spin0[d]);
       std::copy_n(spin, 3, motion.spin);
       const bool loaded = table.may_move(motion);
-      if (loaded)
+      if (loaded && !was_loaded)    // under a load nobody is put to rest
         for (int bit = 0; bit < table.grains(); bit++)
           if (present[bit]) grains.set_awake(bit, true);
       now.turn_by(spin, 0.5 * h);
       before_end = part.before_end + 0.5 * part.dt - (k + 1) * h;
       advance({motion.in_body(now), h}, !loaded);
+      was_loaded = loaded;
       now.turn_by(spin, 0.5 * h);
     }
     std::copy_n(spin1, 3, spin);
