@@ -22,7 +22,7 @@ from .impact import PARTS, Impact, is_timestep_chosen
 from .parameters import ABOUT, PARAMETER_TYPES, PARAMETERS, Parameters
 from .result import COLUMNS, KEYS, Result, described_materials, read_csv
 from .runner import run
-from .shares import read_fates
+from .shares import event_lines, read_fates
 from .sweeping import TABLE
 from .texture import BYTES_A_GRAIN, make_texture, read_texture
 from .version import __version__
@@ -364,13 +364,9 @@ def _carrier(row: Result) -> dict[str, Any]:
 def _times(path: Path, grains: int, timestep: float) -> Any:
     """When each grain left, s after the first contact; 0 for those that did not (N,)."""
     times = np.zeros(grains)
-    rows = False
-    for line in read_text(path).splitlines():
-        if line.startswith("ITEM:"):
-            rows = line.startswith("ITEM: ENTRIES")
-        elif rows:
-            words = line.split()
-            times[int(float(words[DetachRow.GRAIN])) - 1] = max(0.0, float(words[DetachRow.STEP]) - 5) * timestep
+    for line in event_lines(path):
+        words = line.split()
+        times[int(float(words[DetachRow.GRAIN])) - 1] = max(0.0, float(words[DetachRow.STEP]) - 5) * timestep
     return times
 
 

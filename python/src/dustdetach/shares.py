@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,16 @@ from .files import as_path, read_text
 from .texture import read_texture
 
 
+def event_lines(path: Path) -> Iterator[str]:
+    """The rows of the events that LAMMPS' dump local wrote."""
+    rows = False
+    for line in read_text(path).splitlines():
+        if line.startswith("ITEM:"):
+            rows = line.startswith("ITEM: ENTRIES")
+        elif rows:
+            yield line
+
+
 def read_fates(path: str | Path, grains: int) -> NDArray[np.int64]:
     """What became of each grain (0 attached, else the mode) from the events that LAMMPS' dump local wrote.
 
@@ -22,19 +32,15 @@ def read_fates(path: str | Path, grains: int) -> NDArray[np.int64]:
     """
     path = as_path(path, "events")
     fates = np.zeros(grains, dtype=np.int64)
-    rows = False
-    for line in read_text(path).splitlines():
-        if line.startswith("ITEM:"):
-            rows = line.startswith("ITEM: ENTRIES")
-        elif rows:
-            words = line.split()
-            try:
-                grain, mode = int(float(words[DetachRow.GRAIN])), Mode(int(float(words[DetachRow.MODE])))
-            except (ValueError, IndexError, OverflowError):
-                raise InvalidInput(f"{path}: {shown(line)} is no event: the file is cut, or another one") from None
-            if not 1 <= grain <= grains:
-                raise InvalidInput(f"{path}: an event of grain {grain}, but the texture has {grains}")
-            fates[grain - 1] = mode
+    for line in event_lines(path):
+        words = line.split()
+        try:
+            grain, mode = int(float(words[DetachRow.GRAIN])), Mode(int(float(words[DetachRow.MODE])))
+        except (ValueError, IndexError, OverflowError):
+            raise InvalidInput(f"{path}: {shown(line)} is no event: the file is cut, or another one") from None
+        if not 1 <= grain <= grains:
+            raise InvalidInput(f"{path}: an event of grain {grain}, but the texture has {grains}")
+        fates[grain - 1] = mode
     return fates
 
 
