@@ -88,10 +88,12 @@ bool ContactLaw::cuts_by_inverse() { return !can_synchronize(static_cast<const G
 /* ---------------------------------------------------------------------- */
 
 ContactLaw::ContactLaw(GranularModel *_model, int number) :
-    kind(kind_of(_model)), model(_model), normal(nullptr), stiffness(0.0), damping(0.0), shear_stiffness(0.0),
-    shear_damping(0.0), friction(0.0), theta_crit(0.0), synchronized(synchronizes(_model, 0)), shear_place(0),
-    neck_place(0), stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(), last_i(-1.0), last_j(-1.0),
-    reach2(0.0), largest_radius(0.0), largest_reach(0.0)
+    kind(kind_of(_model)), model(_model),
+    normal(dynamic_cast<GranSubModNormalJKRVdW *>(_model->normal_model)), stiffness(0.0), damping(0.0), shear_stiffness(0.0),
+    shear_damping(0.0), friction(0.0), theta_crit(0.0), synchronized(synchronizes(_model, 0) && _model->contact_type != WALL), shear_place(0),
+    neck_place(0), stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(),
+    wall(_model->contact_type == WALL), last_i(-1.0), last_j(-1.0),
+    reach(0.0), largest_radius(0.0), largest_reach(0.0)
 {
   if (kind == MODEL) return;
   damping = Damping::coefficient(model->damping_model);
@@ -102,7 +104,6 @@ ContactLaw::ContactLaw(GranularModel *_model, int number) :
   if (kind == HERTZ) {
     stiffness = Hertz::stiffness(model->normal_model);
   } else {
-    normal = static_cast<GranSubModNormalJKRVdW *>(model->normal_model);
     neck_place = normal->place_in_history();
     theta_crit = model->rolling_model->coeffs[0];
   }
@@ -120,12 +121,11 @@ void ContactLaw::find_adhesion(double radius_i, double radius_j)
   last_i = radius_i;
   last_j = radius_j;
   const double radii = radius_i + radius_j;
-  effective_radius = radius_i * radius_j / radii;
+  effective_radius = wall ? radius_i : radius_i * radius_j / radii;
   adhesion = normal->adhesion(effective_radius);
   if (effective_radius > largest_radius) {
     largest_radius = effective_radius;
     largest_reach = adhesion.reach;
   }
-  const double reach = radii + adhesion.reach;
-  reach2 = reach * reach;
+  reach = radii + adhesion.reach;
 }

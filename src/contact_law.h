@@ -7,6 +7,8 @@
 
 #include "gran_sub_mod_dust_normal.h"
 
+#include "granular_model.h"
+
 #include <cstdint>
 
 namespace LAMMPS_NS {
@@ -21,7 +23,7 @@ class ContactLaw {
     MODEL     // any other: LAMMPS' own functions, contact by contact
   };
 
-  // \param number  another one for each law of a process
+  // \param number  from 1 on, another one for each law of a queue
   ContactLaw(Granular_NS::GranularModel *, int number);
 
   // whether this LAMMPS cuts friction as MindlinBlock::by_inverse says
@@ -29,7 +31,7 @@ class ContactLaw {
 
   Kind kind;
   Granular_NS::GranularModel *model;
-  Granular_NS::GranSubModNormalJKRVdW *normal;    // of grains
+  Granular_NS::GranSubModNormalJKRVdW *normal;    // of grains, in other laws too
   double stiffness, damping, shear_stiffness, shear_damping, friction, theta_crit;
   bool synchronized;
   int shear_place, neck_place;    // in a contact's history
@@ -40,26 +42,39 @@ class ContactLaw {
 
   bool heats() const;
 
-  // whether spheres of these radii are within reach of each other, of grains; true leaves their adhesion here
-  bool grain_touches(double rsq, double radius_i, double radius_j)
+  // whether it is known where its contacts end
+  bool ends() const { return normal || !model->beyond_contact; }
+
+  // whether spheres of these radii are within reach of each other, or of each other's surroundings; true leaves the
+  // adhesion of grains here
+  bool touches(double rsq, double radius_i, double radius_j, double margin = 0.0)
   {
-    if (radius_i != last_i || radius_j != last_j) {
-      if (far(rsq, radius_i, radius_j)) return false;
-      find_adhesion(radius_i, radius_j);
-    }
-    return rsq < reach2;
+    if (normal) return grain_touches(rsq, radius_i, radius_j, margin);
+    const double touching = radius_i + radius_j + margin;
+    return rsq < touching * touching;
   }
 
  private:
-  double last_i, last_j, reach2;
+  bool wall;    // flat: of radius 0
+  double last_i, last_j, reach;
   double largest_radius, largest_reach;    // of all effective radii so far: the larger, the farther
 
+  bool grain_touches(double rsq, double radius_i, double radius_j, double margin)
+  {
+    if (radius_i != last_i || radius_j != last_j) {
+      if (far(rsq, radius_i, radius_j, margin)) return false;
+      find_adhesion(radius_i, radius_j);
+    }
+    return rsq < (reach + margin) * (reach + margin);
+  }
+
   // beyond the reach of the largest ones
-  bool far(double rsq, double radius_i, double radius_j) const
+  bool far(double rsq, double radius_i, double radius_j, double margin) const
   {
     constexpr double SLACK = 1.0e-12;
-    const double radii = radius_i + radius_j, reach = (radii + largest_reach) * (1.0 + SLACK);
-    return rsq > reach * reach && radius_i * radius_j <= largest_radius * radii;
+    const double radii = radius_i + radius_j, farthest = (radii + largest_reach + margin) * (1.0 + SLACK);
+    const bool larger = wall ? radius_i > largest_radius : radius_i * radius_j > largest_radius * radii;
+    return rsq > farthest * farthest && !larger;
   }
   void find_adhesion(double, double);
 };

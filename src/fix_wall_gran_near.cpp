@@ -4,92 +4,172 @@
 
 #include "fix_wall_gran_near.h"
 
-#include "atoms_shown.h"
-#include "gran_sub_mod_dust_normal.h"
+#include "contact_queue.h"
 
 #include "atom.h"
 #include "granular_model.h"
+#include "group.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 using namespace LAMMPS_NS;
+using Dust::at;
+using Dust::put;
+using Dust::Vector;
 
-static constexpr int DIMENSIONS = 3;        // planes have the wall style of their axis
-static constexpr double SLACK = 1.0e-12;    // LAMMPS compares squares
+static constexpr int DIMENSIONS = 3;      // planes have the wall style of their axis
+static constexpr double MARGIN = 0.5;     // of the skin of the neighbor list, to which atoms count as near
 
 /* ---------------------------------------------------------------------- */
 
 FixWallGranNear::FixWallGranNear(LAMMPS *_lmp, int narg, char **arg) :
-    FixWallGran(_lmp, narg, arg), skips(false), largest_radius(-1.0), largest_gap(0.0)
+    FixWallGran(_lmp, narg, arg), left_to_parent(true), near_known(false)
 {
 }
 
+FixWallGranNear::~FixWallGranNear() = default;
+
 /* ----------------------------------------------------------------------
-   planes at rest whose contacts end at the radius, or where the law says
+   ours are planes at rest or sliding along themselves, whose contacts end where it is known
 ------------------------------------------------------------------------- */
 
 void FixWallGranNear::init()
 {
   FixWallGran::init();
-  const bool adhesive = dynamic_cast<const Granular_NS::GranSubModNormalJKRVdW *>(model->normal_model);
-  skips = wallstyle >= 0 && wallstyle < DIMENSIONS && !wiggle && !heat_flag && (adhesive || !model->beyond_contact);
-  largest_radius = -1.0;
-  close.clear();
+  read_law();
+  left_to_parent = wallstyle < 0 || wallstyle >= DIMENSIONS || wiggle || heat_flag || peratom_flag || fix_rigid ||
+      !use_history || group->dynamic[igroup] || !laws.front().ends();
+}
+
+void FixWallGranNear::reset_dt()
+{
+  FixWallGran::reset_dt();
+  read_law();
+}
+
+void FixWallGranNear::read_law()
+{
+  laws.clear();
+  laws.emplace_back(model, 1);
+  queue = std::make_unique<ContactQueue>(laws, true);
+  near_known = false;
 }
 
 /* ----------------------------------------------------------------------
-   adhesion reaches the farther the larger an atom is: as far as that of the largest one will do
+   whatever else LAMMPS does with a wall it does without atoms
 ------------------------------------------------------------------------- */
 
-double FixWallGranNear::reach(double radius)
+void FixWallGranNear::post_force(int vflag)
 {
-  if (radius > largest_radius) {
-    largest_radius = radius;
-    largest_gap = model->beyond_contact ? model->pulloff_distance(radius, 0.0) : 0.0;
+  if (left_to_parent) {
+    FixWallGran::post_force(vflag);
+    return;
   }
-  return (radius + largest_gap) * (1.0 + SLACK);
+  const int nlocal = std::exchange(atom->nlocal, 0);
+  FixWallGran::post_force(vflag);
+  atom->nlocal = nlocal;
+  if (nlocal == 0) return;
+  if (!near_known || neighbor->ago == 0 || then.left(atom->x[0], atom->radius, nlocal, MARGIN * neighbor->skin))
+    find_near();
+  add_contacts();
 }
 
 /* ----------------------------------------------------------------------
-   An atom that was close is shown once more: LAMMPS then clears its history. After atoms have changed places all are.
+   an atom that is far has no history any more
 ------------------------------------------------------------------------- */
 
 void FixWallGranNear::find_near()
 {
+  constexpr double SLACK = 1.0e-6;    // more than rounding may add
+  const Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
+  const double margin = MARGIN * (1.0 + SLACK) * neighbor->skin;
   const int nlocal = atom->nlocal;
-  const bool anew = neighbor->ago == 0 || static_cast<int>(close.size()) != nlocal;
-  if (anew) close.assign(nlocal, 1);
-  groups.resize(nlocal);
-  const int *mask = atom->mask;
-  const double *const *x = atom->x, *radius = atom->radius;
+  near.clear();
   for (int i = 0; i < nlocal; i++) {
-    groups[i] = 0;
-    if (!(mask[i] & groupbit)) continue;
-    const double distance = std::min(std::fabs(x[i][wallstyle] - lo), std::fabs(hi - x[i][wallstyle]));
-    const char now = distance < reach(radius[i]);
-    if (now || close[i]) groups[i] = mask[i];
-    close[i] = now;
+    const double distance = planes.distance(atom->x[i][wallstyle]);
+    if (laws.front().touches(distance * distance, atom->radius[i], 0.0, margin))
+      near.push_back(i);
+    else if (atom->mask[i] & groupbit)
+      std::fill_n(history_one[i], size_history, 0.0);
   }
+  then.note(atom->x[0], atom->radius, nlocal);
+  near_known = true;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixWallGranNear::post_force(int vflag)
+void FixWallGranNear::add_contacts()
 {
-  if (!skips) {
-    FixWallGran::post_force(vflag);
-    return;
+  ContactLaw *law = laws.data();
+  const Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
+  queue->clear();    // an error may have left some
+  for (const int i : near) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double distance = planes.distance(atom->x[i][wallstyle]);
+    if (!law->touches(distance * distance, atom->radius[i], 0.0)) {
+      std::fill_n(history_one[i], size_history, 0.0);
+      continue;
+    }
+    if (model->beyond_contact) history_one[i][0] = 1.0;
+    if (law->kind == ContactLaw::MODEL)
+      compute_model(i, distance);
+    else
+      queue->add(law, history_one[i], i, i);
+    if (queue->full()) compute_waiting();
   }
-  find_near();
-  const AtomsShown shown(atom, groups);
-  FixWallGran::post_force(vflag);
+  compute_waiting();
+}
+
+/* ----------------------------------------------------------------------
+   a contact that LAMMPS' own functions compute
+------------------------------------------------------------------------- */
+
+void FixWallGranNear::compute_model(int i, double distance)
+{
+  double velocity[3] = {0.0, 0.0, 0.0}, resting[3] = {0.0, 0.0, 0.0};
+  if (wshear) velocity[axis] = vshear;
+  std::fill_n(model->dx, 3, 0.0);
+  model->dx[wallstyle] = distance;
+  model->radi = atom->radius[i];
+  model->radj = 0.0;
+  model->touch = true;
+  model->check_contact();
+  model->meff = atom->rmass[i];
+  model->vi = atom->v[i];
+  model->vj = velocity;
+  model->omegai = atom->omega[i];
+  model->omegaj = resting;
+  model->history = history_one[i];
+  model->calculate_forces();
+  queue->add_computed(laws.data(), i, i);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranNear::compute_waiting()
+{
+  if (queue->empty()) return;
+  Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
+  double velocity[3] = {0.0, 0.0, 0.0};
+  if (wshear) velocity[axis] = vshear;
+  planes.velocity = at(velocity);
+  queue->meet(Dust::Spheres{atom->x[0], atom->v[0], atom->omega[0], atom->radius, atom->rmass}, planes);
+  queue->compute(dt, update->setupflag == 0, update->ntimestep);
+  for (const ContactQueue::Contact &contact : *queue) {
+    const int i = contact.i();
+    put(atom->f[i], at(atom->f[i]) + contact.force());
+    put(atom->torque[i], at(atom->torque[i]) + contact.torque_i());
+  }
+  queue->clear();
 }
 
 /* ---------------------------------------------------------------------- */
 
 double FixWallGranNear::memory_usage()
 {
-  return FixWallGran::memory_usage() + double(groups.size() * sizeof(int) + close.size());
+  return FixWallGran::memory_usage() + double(near.capacity() * sizeof(int)) + then.memory_usage() +
+      (queue ? double(sizeof(ContactQueue)) : 0.0);
 }

@@ -11,6 +11,8 @@ PairStyle(granular,PairGranularFused);
 #ifndef LMP_PAIR_GRANULAR_FUSED_H
 #define LMP_PAIR_GRANULAR_FUSED_H
 
+#include "core/whereabouts.h"
+
 #include "pair_granular.h"
 
 #include <memory>
@@ -37,24 +39,29 @@ class PairGranularFused : public PairGranular {
   std::vector<class ContactLaw> laws;        // one for each of models_list
   std::vector<class ContactLaw *> law_of;    // of two types
   bool laws_known, none_fused, hertz_alone, heats;
-  int laws_made;
   void read_laws();
   bool left_to_parent() const;
 
-  // contacts in the order of the neighbor list that wait to be computed together
-  struct Contact;
-  struct Waiting;
-  std::unique_ptr<Waiting> waiting;
+  // pairs of the neighbor list that touch or may soon, in its order
+  struct ClosePair {
+    double *history;
+    int i, j, touches;
+  };
+  std::vector<ClosePair> close;
+  Dust::Whereabouts then;    // when they were found
+  double margin;
+  bigint found_at;
+  bool close_known;
+  bool still_close() const;
+  void adapt_margin();
+  void find_close();
+  void change(ClosePair &, bool);
+
+  std::unique_ptr<class ContactQueue> queue;
   template <bool> void gather();
-  bool compute_model(Contact &, bool);
-  void forget(double *);
+  bool compute_model(const ClosePair &, class ContactLaw *);
+  void compute_waiting();
   double effective_mass(int, int) const;
-  void compute_waiting(int);
-  void complete();
-  void take_place(Contact &);
-  void set_coefficients(const class ContactLaw &, int);
-  void keep_history();
-  void apply_forces();
 };
 
 }    // namespace LAMMPS_NS

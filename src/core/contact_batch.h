@@ -19,6 +19,28 @@ template <int N> struct Vectors {
   Vector operator[](int k) const { return {x[k], y[k], z[k]}; }
 };
 
+inline Vector at(const double *v, int i = 0) { return {v[3 * i], v[3 * i + 1], v[3 * i + 2]}; }
+
+inline void put(double *to, const Vector &v)
+{
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+/*! Spheres, of which contacts tell the places: three coordinates each, one radius and mass */
+struct Spheres {
+  const double *x, *v, *omega, *radius, *mass;
+};
+
+/*! Two planes across an axis, of which a sphere meets the nearer one, and the velocity of both */
+struct Planes {
+  int axis;
+  double low, high;    // coordinates
+  Vector velocity;
+  double distance(double x) const { return x - low < high - x ? x - low : -(high - x); }
+};
+
 /*! Contacts of two spheres that are computed together, out of place: what all laws need of them, and what they return.
  *  SI or any other consistent units; i and j are the spheres, the normal points from j to i. */
 struct ContactBatch {
@@ -27,9 +49,14 @@ struct ContactBatch {
   static constexpr int SIZE = COUNT + 8;
 
   int count = 0;
+  // of each contact, before it is met: its spheres, and where its tangential displacement is kept
+  int i[SIZE], j[SIZE];
+  double *kept_shear[SIZE];
+
   bool synchronized = false;    // some of the contacts have half > 0
   bool shear_damped = false;    // some have a shear_damping
   bool by_inverse = false;      // as MindlinBlock's
+  bool wall = false;            // j are flat walls: radius_j is 0 and means none
 
   // geometry and motion
   Vectors<SIZE> dx;    // x_i - x_j
@@ -51,12 +78,19 @@ struct ContactBatch {
   // of i; the force on j is the opposite one
   Vectors<SIZE> force, torque_i, torque_j;
 
-  void clear()
+  /*! How the spheres of all contacts meet, and their displacements of the last step */
+  void meet(const Spheres &);
+  /*! The same with walls */
+  void meet(const Spheres &, const Planes &);
+  /*! Keeps the new ones */
+  void keep() const
   {
-    count = 0;
-    synchronized = shear_damped = false;
+    for (int k = 0; k < count; k++) put(kept_shear[k], shear[k]);
   }
 };
+
+/*! Where the force acts: middle of the overlap, or, of a wall, the radius */
+DUST_IN_LANES double arm(bool wall, double radius, double overlap) { return wall ? radius : radius - 0.5 * overlap; }
 
 /*! Normal in the middle of the step, or at its end where half is 0 */
 DUST_IN_LANES Vector half_step_normal(const ContactBatch &b, int k)

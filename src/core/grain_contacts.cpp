@@ -128,6 +128,7 @@ DUST_IN_LANES void push_apart(GrainBatch &b, int first, double dt, MindlinBlock 
 template <bool MOVE>
 DUST_IN_LANES void turn(GrainBatch &b, int first, double dt, const MindlinBlock &friction, const double *normal)
 {
+  const bool wall = b.wall;
   for (int l = 0, k = first; l < LANES; l++, k++) {
     const Vector n = friction.n[l], tangential = friction.force[l], rolled = b.rolling[k];
     const double before = b.neck[k], x = b.radius[k], R = b.effective_radius[k], sign = std::copysign(1.0, before);
@@ -152,8 +153,8 @@ DUST_IN_LANES void turn(GrainBatch &b, int first, double dt, const MindlinBlock 
     const Vector roll = R * cross(n, only_if(neck, -stiffness * xi)), torque = -1.0 * cross(n, tangential);
     b.shear.set(k, friction.shear[l]);
     b.force.set(k, normal[l] * n + tangential);
-    b.torque_i.set(k, (b.radius_i[k] - 0.5 * overlap) * torque + roll);
-    b.torque_j.set(k, (b.radius_j[k] - 0.5 * overlap) * torque - roll);
+    b.torque_i.set(k, arm(wall, b.radius_i[k], overlap) * torque + roll);
+    b.torque_j.set(k, arm(wall, b.radius_j[k], overlap) * torque - roll);
   }
 }
 
@@ -187,6 +188,48 @@ DUST_LANES static void compute(GrainBatch &batch, double dt, bool move)
     compute_all<true, true, false>(batch, dt);
   else
     compute_all<true, true, true>(batch, dt);
+}
+
+void GrainBatch::meet(const Spheres &spheres)
+{
+  ContactBatch::meet(spheres);
+  const double *__restrict omega = spheres.omega;
+  GrainBatch &__restrict b = *this;
+  for (int k = 0, n = count; k < n; k++) b.spin.set(k, at(omega, b.i[k]) - at(omega, b.j[k]));
+  recall();
+}
+
+void GrainBatch::meet(const Spheres &spheres, const Planes &planes)
+{
+  ContactBatch::meet(spheres, planes);
+  for (int k = 0; k < count; k++) spin.set(k, at(spheres.omega, i[k]));
+  recall();
+}
+
+void GrainBatch::recall()
+{
+  GrainBatch &__restrict b = *this;
+  for (int k = 0, n = count; k < n; k++) {
+    const double *from = b.kept[k];
+    b.neck[k] = from[0];
+    b.rolling.set(k, at(from + 1));
+    b.overlap[k] = from[4];
+    b.coasting[k] = from[5];
+    b.rate[k] = from[6];
+  }
+}
+
+void GrainBatch::keep() const
+{
+  ContactBatch::keep();
+  for (int k = 0; k < count; k++) {
+    double *to = kept[k];
+    to[0] = neck[k];
+    put(to + 1, rolling[k]);
+    to[4] = overlap[k];
+    to[5] = coasting[k];
+    to[6] = rate[k];
+  }
 }
 
 void Dust::compute_forces(GrainBatch &batch, double dt, bool move)

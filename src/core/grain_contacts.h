@@ -14,6 +14,9 @@ namespace Dust {
 struct GrainBatch : ContactBatch {
   static constexpr int NECK = 1, SLIDE = 2, ROLL = 4;    // what has changed for good in a contact
 
+  double *kept[SIZE];    // where a contact's neck, its rolling and the rate of its overlap are kept: KEPT values
+  static constexpr int KEPT = 7;
+
   Vectors<SIZE> spin;    // omega_i - omega_j
 
   // of the materials and of the effective radius
@@ -28,8 +31,16 @@ struct GrainBatch : ContactBatch {
 
   double events[SIZE];    // a sum of these
 
+  /*! As those of ContactBatch, with what grains keep besides */
+  void meet(const Spheres &);
+  void meet(const Spheres &, const Planes &);
+  void keep() const;
+
   // from one part of the work to the next: r, overlap, a/a0, force without a neck, Newton's unknown and depth (jkr.h)
   double distance[SIZE], now[SIZE], radius[SIZE], attraction[SIZE], root[SIZE], depth[SIZE];
+
+ private:
+  void recall();
 };
 
 /*! Forces and torques, and what the contacts remember moved on, in the operations of LAMMPS' `pair_style granular` with

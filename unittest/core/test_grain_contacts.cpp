@@ -95,7 +95,7 @@ TEST(GrainContacts, EachAsIfItWereAlone)
       for (const Contact &c : contacts) add(all, c, synchronized);
       Dust::compute_forces(all, 1e-9, move);
       for (int k = 0; k < GrainBatch::COUNT; k++) {
-        one.clear();
+        one = {};
         add(one, contacts[k], synchronized);
         Dust::compute_forces(one, 1e-9, move);
         const std::vector<double> a = result(all, k), b = result(one, 0);

@@ -86,7 +86,7 @@ TEST(HertzContacts, EachAsIfItWereAlone)
       for (const Contact &c : contacts) add(all, c);
       Dust::compute_forces(all, 1e-6, move);
       for (int k = 0; k < HertzBatch::COUNT; k++) {
-        one.clear();
+        one = {};
         add(one, contacts[k]);
         Dust::compute_forces(one, 1e-6, move);
         const std::vector<double> a = result(all, k), b = result(one, 0);
