@@ -88,12 +88,11 @@ bool ContactLaw::cuts_by_inverse() { return !can_synchronize(static_cast<const G
 /* ---------------------------------------------------------------------- */
 
 ContactLaw::ContactLaw(GranularModel *_model, int number) :
-    kind(kind_of(_model)), model(_model),
-    normal(dynamic_cast<GranSubModNormalJKRVdW *>(_model->normal_model)), stiffness(0.0), damping(0.0), shear_stiffness(0.0),
-    shear_damping(0.0), friction(0.0), theta_crit(0.0), synchronized(synchronizes(_model, 0) && _model->contact_type != WALL), shear_place(0),
-    neck_place(0), stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(),
-    wall(_model->contact_type == WALL), last_i(-1.0), last_j(-1.0),
-    reach(0.0), largest_radius(0.0), largest_reach(0.0)
+    kind(kind_of(_model)), model(_model), normal(dynamic_cast<GranSubModNormalJKRVdW *>(_model->normal_model)),
+    stiffness(0.0), damping(0.0), shear_stiffness(0.0), shear_damping(0.0), friction(0.0), theta_crit(0.0),
+    synchronized(synchronizes(_model, 0) && _model->contact_type != WALL), shear_place(0), neck_place(0),
+    stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(), wall(_model->contact_type == WALL),
+    last_i(-1.0), last_j(-1.0), reach(0.0), largest_radius(0.0), largest_reach(0.0)
 {
   if (kind == MODEL) return;
   damping = Damping::coefficient(model->damping_model);

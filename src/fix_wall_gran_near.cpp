@@ -8,7 +8,6 @@
 
 #include "atom.h"
 #include "granular_model.h"
-#include "group.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -20,8 +19,8 @@ using Dust::at;
 using Dust::put;
 using Dust::Vector;
 
-static constexpr int DIMENSIONS = 3;      // planes have the wall style of their axis
-static constexpr double MARGIN = 0.5;     // of the skin of the neighbor list, to which atoms count as near
+static constexpr int DIMENSIONS = 3;     // planes have the wall style of their axis
+static constexpr double MARGIN = 0.5;    // of the skin of the neighbor list, to which atoms count as near
 
 /* ---------------------------------------------------------------------- */
 
@@ -41,7 +40,7 @@ void FixWallGranNear::init()
   FixWallGran::init();
   read_law();
   left_to_parent = wallstyle < 0 || wallstyle >= DIMENSIONS || wiggle || heat_flag || peratom_flag || fix_rigid ||
-      !use_history || group->dynamic[igroup] || !laws.front().ends();
+                   !use_history || !laws.front().ends();
 }
 
 void FixWallGranNear::reset_dt()
@@ -171,5 +170,5 @@ void FixWallGranNear::compute_waiting()
 double FixWallGranNear::memory_usage()
 {
   return FixWallGran::memory_usage() + double(near.capacity() * sizeof(int)) + then.memory_usage() +
-      (queue ? double(sizeof(ContactQueue)) : 0.0);
+         (queue ? double(sizeof(ContactQueue)) : 0.0);
 }

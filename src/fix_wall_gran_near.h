@@ -39,8 +39,8 @@ class FixWallGranNear : public FixWallGran {
   std::vector<class ContactLaw> laws;    // the one
   void read_law();
 
-  std::vector<int> near;    // atoms that touch the wall or may soon
-  Dust::Whereabouts then;   // when they were found
+  std::vector<int> near;     // atoms that touch the wall or may soon
+  Dust::Whereabouts then;    // when they were found
   bool near_known;
   void find_near();
 

@@ -26,8 +26,8 @@ using Dust::Vector;
 /* ---------------------------------------------------------------------- */
 
 PairGranularFused::PairGranularFused(LAMMPS *_lmp) :
-    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false),
-    margin(0.1), found_at(0), close_known(false)
+    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), margin(0.1), found_at(0),
+    close_known(false)
 {
 }
 
@@ -108,7 +108,7 @@ bool PairGranularFused::still_close() const
   constexpr double HALF = 0.5 * (1.0 - 1.0e-6);    // of two atoms; less what rounding may add
   const int nall = atom->nlocal + atom->nghost;
   return close_known && neighbor->ago != 0 &&
-      !then.left(atom->x[0], atom->radius, nall, HALF * margin * neighbor->skin);
+         !then.left(atom->x[0], atom->radius, nall, HALF * margin * neighbor->skin);
 }
 
 /* ----------------------------------------------------------------------
@@ -264,5 +264,5 @@ void PairGranularFused::compute_waiting()
 double PairGranularFused::memory_usage()
 {
   return PairGranular::memory_usage() + double(close.capacity() * sizeof(ClosePair)) + then.memory_usage() +
-      (queue ? double(sizeof(ContactQueue)) : 0.0);
+         (queue ? double(sizeof(ContactQueue)) : 0.0);
 }

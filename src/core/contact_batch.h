@@ -56,7 +56,10 @@ struct ContactBatch {
   bool synchronized = false;    // some of the contacts have half > 0
   bool shear_damped = false;    // some have a shear_damping
   bool by_inverse = false;      // as MindlinBlock's
-  bool wall = false;            // j are flat walls: radius_j is 0 and means none
+  bool wall = false;            // j are flat walls: radius_j is 0 and means none, and the force acts at radius_i
+
+  /*! Of the overlap, by which the force acts inside of the radius */
+  double inside() const { return wall ? 0.0 : 0.5; }
 
   // geometry and motion
   Vectors<SIZE> dx;    // x_i - x_j
@@ -88,9 +91,6 @@ struct ContactBatch {
     for (int k = 0; k < count; k++) put(kept_shear[k], shear[k]);
   }
 };
-
-/*! Where the force acts: middle of the overlap, or, of a wall, the radius */
-DUST_IN_LANES double arm(bool wall, double radius, double overlap) { return wall ? radius : radius - 0.5 * overlap; }
 
 /*! Normal in the middle of the step, or at its end where half is 0 */
 DUST_IN_LANES Vector half_step_normal(const ContactBatch &b, int k)

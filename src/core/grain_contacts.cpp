@@ -128,7 +128,7 @@ DUST_IN_LANES void push_apart(GrainBatch &b, int first, double dt, MindlinBlock 
 template <bool MOVE>
 DUST_IN_LANES void turn(GrainBatch &b, int first, double dt, const MindlinBlock &friction, const double *normal)
 {
-  const bool wall = b.wall;
+  const double inside = b.inside();
   for (int l = 0, k = first; l < LANES; l++, k++) {
     const Vector n = friction.n[l], tangential = friction.force[l], rolled = b.rolling[k];
     const double before = b.neck[k], x = b.radius[k], R = b.effective_radius[k], sign = std::copysign(1.0, before);
@@ -153,8 +153,8 @@ DUST_IN_LANES void turn(GrainBatch &b, int first, double dt, const MindlinBlock 
     const Vector roll = R * cross(n, only_if(neck, -stiffness * xi)), torque = -1.0 * cross(n, tangential);
     b.shear.set(k, friction.shear[l]);
     b.force.set(k, normal[l] * n + tangential);
-    b.torque_i.set(k, arm(wall, b.radius_i[k], overlap) * torque + roll);
-    b.torque_j.set(k, arm(wall, b.radius_j[k], overlap) * torque - roll);
+    b.torque_i.set(k, (b.radius_i[k] - inside * overlap) * torque + roll);
+    b.torque_j.set(k, (b.radius_j[k] - inside * overlap) * torque - roll);
   }
 }
 

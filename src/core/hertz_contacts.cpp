@@ -21,7 +21,7 @@ DUST_IN_LANES void compute_block(HertzBatch &b, int first, double dt)
 {
   MindlinBlock friction;
   friction.by_inverse = b.by_inverse;
-  const bool wall = b.wall;
+  const double inside = b.inside(), flat = b.wall ? 1.0 : 0.0;    // numbers: a choice would be made lane by lane
   double overlap[LANES], normal[LANES];
   for (int l = 0, k = first; l < LANES; l++, k++) {
     const Vector velocity = b.velocity[k];
@@ -31,8 +31,7 @@ DUST_IN_LANES void compute_block(HertzBatch &b, int first, double dt)
     const Vector whole = (1.0 / r) * b.dx[k], n = SYNCHRONIZED ? half_step_normal(b, k) : whole;
     const double approach = dot(velocity, n);
 
-    const double reduced = radius_i * radius_j / radii;    // 0 with a wall
-    const double a = std::sqrt(overlap[l] * (wall ? radius_i : reduced));
+    const double a = std::sqrt(overlap[l] * (radius_i * radius_j / radii + flat * radius_i));
     const double elastic = b.stiffness[k] * a * overlap[l];
     const double rate_if = b.damping[k] * std::sqrt(b.mass[k] * elastic / overlap[l]);
     const double rate = overlap[l] > 0.0 ? rate_if : 0.0;
@@ -53,8 +52,8 @@ DUST_IN_LANES void compute_block(HertzBatch &b, int first, double dt)
     const Vector n = friction.n[l], tangential = friction.force[l], torque = -1.0 * cross(n, tangential);
     b.shear.set(k, friction.shear[l]);
     b.force.set(k, normal[l] * n + tangential);
-    b.torque_i.set(k, arm(wall, b.radius_i[k], overlap[l]) * torque);
-    b.torque_j.set(k, arm(wall, b.radius_j[k], overlap[l]) * torque);
+    b.torque_i.set(k, (b.radius_i[k] - inside * overlap[l]) * torque);
+    b.torque_j.set(k, (b.radius_j[k] - inside * overlap[l]) * torque);
   }
 }
 

@@ -209,6 +209,19 @@ TEST(PairGranularFused, BetweenSteps)
   EXPECT_EQ(differences(shaken_box(both), {"run 100", "pair_coeff 1 1" + steel("1e8", "0.2") + "\nrun 100"}), 0);
 }
 
+// pairs that were far come close at once, by a hand or by growing
+TEST(PairGranularFused, AtomsThatAreMovedAndGrow)
+{
+  const std::string both = GRANULAR + steel() + "\npair_coeff 2 *" + sticky();
+  const std::string away = "group some id 1:60\ndisplace_atoms some move 9e-5 3e-5 -6e-5\n";
+  EXPECT_EQ(differences(shaken_box(both), {"run 100", away + "run 50 pre no", away + "run 100"}), 0);
+  const std::string grow = "variable grown equal 1.2e-3+1e-6*step\nfix grow all adapt 1 atom diameter v_grown\n";
+  std::string growing = shaken_box(both, grow);
+  growing.replace(growing.find("sphere"), 6, "sphere 1");
+  EXPECT_EQ(differences(growing, {"run 100", "run 100"}), 0);
+  EXPECT_EQ(differences(shaken_box(both, "neighbor 0.0 bin"), RUNS), 0);    // each step is a list of its own
+}
+
 // near enough to be looked at again, out of reach, on the other side, from one wall to the other
 TEST(FixWallGranNear, Planes)
 {
@@ -223,8 +236,16 @@ TEST(FixWallGranNear, Planes)
             0);
   EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " wiggle z 1e-4 1e-3"), RUNS), 0);
   EXPECT_EQ(differences(shaken_box(pair, wall + steel() + sides + " shear x 0.5"), RUNS), 0);
-  EXPECT_EQ(differences(shaken_box(pair, wall + " jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3" + sides), RUNS),
-            0);
+  // laws that are LAMMPS' own, with an end that is known and without
+  for (const std::string law :
+       {" jkr 1e7 1e-6 0.3 0.5 tangential mindlin NULL 0.0 0.3", " hooke 1e3 0.5 tangential linear_history 3e2 0.5 0.3",
+        " hertz/material 2e8 0.6 0.3 tangential mindlin NULL 0.1 0.3 rolling sds 1e3 0.0 0.1 twisting marshall",
+        " jkr/vdw 1e7 2e5 0.3 1e-13 1e-7 tangential mindlin NULL 0.0 0.3 damping viscoelastic"}) {
+    EXPECT_EQ(differences(shaken_box(pair, wall + law + sides), RUNS), 0);
+    EXPECT_EQ(differences(shaken_box(pair, wall + law + sides + " shear y 0.3"), RUNS), 0);
+  }
+  EXPECT_EQ(differences(shaken_box(pair, wall + sticky("0.4") + sides + " shear x 0.5"), RUNS), 0);
+  EXPECT_EQ(differences(shaken_box(pair), {"run 100", "displace_atoms all move 0 0 -5e-5\nrun 50 pre no"}), 0);
 }
 
 TEST(FixWallGranNear, Regions)
