@@ -93,8 +93,22 @@ FixWallGranRegionNear::Look FixWallGranRegionNear::look_at(int i, const Vector &
 }
 
 /* ----------------------------------------------------------------------
-   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that is far
-   it clears its history.
+   whether LAMMPS, which takes sines and cosines for each atom that it sees, may find a contact here, or none off the
+   region. The place differs by round-off from where LAMMPS finds the atom.
+------------------------------------------------------------------------- */
+
+bool FixWallGranRegionNear::may_touch(const Vector &place, double radius) const
+{
+  constexpr double BESIDE = 1.0e-6;
+  const double off = BESIDE * radius, reach = radius + model->pulloff_distance(radius, 0.0) + 4.0 * off;
+  double x[3] = {place.x + off, place.y + off, place.z + off};
+  if (region->inside(x[0], x[1], x[2]) != region->interior) return true;
+  return (region->interior ? region->surface_interior(x, reach) : region->surface_exterior(x, reach)) > 0;
+}
+
+/* ----------------------------------------------------------------------
+   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that does not
+   touch it forgets its contacts.
 ------------------------------------------------------------------------- */
 
 void FixWallGranRegionNear::find_near()
@@ -112,7 +126,11 @@ void FixWallGranRegionNear::find_near()
     const Vector place = frame.of(atom->x[i]), moved = place - looks[i].place;
     const bool looks_now = anew || !(dot(moved, moved) < margin * margin) || atom->radius[i] != looks[i].radius;
     if (looks_now) looks[i] = look_at(i, place, margin);
-    if (looks_now || looks[i].near) groups[i] = mask[i];
+    if (!looks_now && !looks[i].near) continue;
+    if (may_touch(place, atom->radius[i]))
+      groups[i] = mask[i];
+    else if (use_history)
+      ncontact[i] = 0;
   }
 }
 

@@ -40,6 +40,7 @@ class FixWallGranRegionNear : public FixWallGranRegion {
   std::vector<int> groups;    // of the atoms near the wall, 0 of all others
   bool skips;                 // whether atoms may be skipped
   Look look_at(int, const Dust::Vector &, double);
+  bool may_touch(const Dust::Vector &, double) const;
   void find_near();
 };
 
