@@ -11,10 +11,10 @@ bed: 20,000 carriers that lie still on a floor, periodic to the sides, for 500 s
 in two minutes; `--bed FILE` keeps where they lie, or reads it if it is there. LAMMPS' granular has its own
 coeff_restitution with limit_damping; gran/hertz/history and LIGGGHTS' hertz with tangential history have the same
 stiffness and friction. Their damping is another, which in a bed at rest costs the same.
-resolved: in.impact.resolved, in free flight at rest, where each grain has one contact, and whole. At rest the loop alone:
-what 2500 steps take more than 500, by steps and grains, so that start-up cancels, and in it LAMMPS' Pair time. The stock
-contact is that of resolved_cost.py, those of LIGGGHTS and YADE are told in other_programs.py. A program that is not
-installed (Debian: liggghts, yade) is left out.
+resolved: in.impact.resolved, in free flight at rest, where each grain has one contact, and whole. At rest the loop
+alone: what 2500 steps take more than 500, by steps and grains, so that start-up cancels, and in it LAMMPS' Pair time.
+The stock contact is that of resolved_cost.py, those of LIGGGHTS and YADE are told in other_programs.py. A program that
+is not installed (Debian: liggghts, yade) is left out.
 """
 
 import argparse
@@ -229,8 +229,8 @@ def by_steps(variants: dict[str, Callable[[int], list[str]]], repeat: int, folde
 def resolved(folder: Path, repeat: int, before: Path | None, _: Path | None) -> dict:
     text = uncounted((INPUTS / "in.impact.resolved").read_text())
     ours, own = write(folder, "ours", at_rest(text)), write(folder, "own", at_rest(stock(text)))
-    start = at_rest(text).replace("run ${rest}", "run 0\nwrite_dump all custom grains type x y z radius modify format float %.17g")
-    cpu_seconds(lammps(write(folder, "start", start), PLUGIN), folder)
+    dump = "write_dump all custom grains type x y z radius modify format float %.17g\n"
+    cpu_seconds(lammps(write(folder, "start", at_rest(text) + dump), PLUGIN, rest="0"), folder)
     variants = {"ours": lambda steps: lammps(ours, PLUGIN, rest=str(steps))}
     if before:
         variants["before"] = lambda steps: lammps(ours, before, rest=str(steps))
