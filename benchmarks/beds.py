@@ -18,10 +18,10 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from deck import BUILD, ROOT, changed, read
 from machine import description
 
-ROOT = Path(__file__).resolve().parents[1]
-LMP = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build")) / "bin/lmp-dust"
+LMP = BUILD / "bin/lmp-dust"
 ROWS = " ".join(f"f_dust[{i}]" for i in range(1, 12))
 TIMESTEP = "2e-6"  # s
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -32,10 +32,8 @@ def run(carriers: int, ranks: int = 1, fall: str = "", **variables: str) -> dict
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.drop"
         # every detachment, to the last digit
-        dump = f"{fall}\n\\1dump rows all local ${{every}} rows {ROWS}\ndump_modify rows format float %.17g\n"
-        text, n = re.subn(r"^(fix +field .*\n)", dump, (ROOT / "lammps-inputs/in.drop").read_text(), flags=re.MULTILINE)
-        assert n == 1
-        deck.write_text(text)
+        dump = f"{fall}\ndump rows all local ${{every}} rows {ROWS}\ndump_modify rows format float %.17g\n"
+        deck.write_text(changed(read("in.drop"), r"^(?=fix +field )", dump))
         command = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-np", str(ranks)]
         command += [str(LMP), "-in", str(deck), "-log", "none", "-var", "carriers", str(carriers)]
         for name, value in {"timestep": TIMESTEP, **variables}.items():

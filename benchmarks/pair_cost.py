@@ -29,8 +29,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import other_programs
+from deck import INPUTS, PLUGIN
 from machine import description
-from resolved_cost import INPUTS, LMP, PLUGIN, at_rest, stock, uncounted
+from resolved_cost import LMP, at_rest, stock, uncounted
 
 CARRIERS = 20_000
 STEPS = 500  # of the bed
