@@ -227,30 +227,53 @@ TEST(FixWallGranNear, Planes)
             0);
 }
 
+namespace {
+
+// a wall of a region, and variables that move one
+std::string walled(const std::string &region, const std::string &law)
+{
+  return shaken_box(GRANULAR + steel(), "variable way equal 1e-4*sin(5e3*time)\nvariable turn equal 300*time\n"
+                                        "variable lowest equal 0.5*bound(all,zmin)\n"
+                                        "variable shaken equal 1e-6*random(-1,1,8)\nregion wall " +
+                                            region + "\nfix wall all wall/gran/region granular" + law + "region wall");
+}
+
+}    // namespace
+
 TEST(FixWallGranNear, Regions)
 {
-  const auto wall = [](const std::string &region, const std::string &law) {
-    return shaken_box(GRANULAR + steel(), "variable way equal 1e-4*sin(5e3*time)\nvariable turn equal 300*time\n"
-                                          "region wall " +
-                                              region + "\nfix wall all wall/gran/region granular" + law +
-                                              "region wall");
-  };
   for (const std::string &law : {steel(), sticky()}) {
-    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("block 3e-3 5e-3 3e-3 5e-3 3e-3 5e-3 side out units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("cylinder z 4.2e-3 4.2e-3 4e-3 INF INF units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("sphere 4.2e-3 4.2e-3 4.2e-3 4e-3 units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("block 1e-3 7e-3 1e-3 7e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("block 3e-3 5e-3 3e-3 5e-3 3e-3 5e-3 side out units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("cylinder z 4.2e-3 4.2e-3 4e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("sphere 4.2e-3 4.2e-3 4.2e-3 4e-3 units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("plane 0 0 2e-3 0.1 0.2 0.9 units box", law), RUNS), 0);
     // moving, turning about an axis of their own and another one
-    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box move v_way NULL v_way", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0",
-                               law),
+    EXPECT_EQ(differences(walled("plane 0 0 2e-3 0.1 0.2 0.9 units box move v_way NULL v_way", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0",
+                                 law),
                           RUNS),
               0);
-    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law),
+    EXPECT_EQ(differences(walled("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law),
                           RUNS),
               0);
     // what is left to LAMMPS
-    EXPECT_EQ(differences(wall("cone z 4.2e-3 4.2e-3 2e-3 4e-3 1e-3 8e-3 units box open 2", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("cone z 4.2e-3 4.2e-3 2e-3 4e-3 1e-3 8e-3 units box open 2", law), RUNS), 0);
   }
+}
+
+// LAMMPS asks a variable for the motion once a step, with all atoms in their groups
+TEST(FixWallGranNear, RegionsThatFollowAtomsOrChance)
+{
+  for (const std::string way : {"v_lowest", "v_shaken"}) {
+    EXPECT_EQ(differences(walled("plane 0 0 2e-3 0.1 0.2 0.9 units box move NULL NULL " + way, steel()), RUNS), 0);
+    EXPECT_EQ(differences(walled("block INF INF INF INF 0 8e-3 units box move NULL NULL " + way, sticky()), RUNS), 0);
+  }
+}
+
+// atoms whose centers are at the surface when they are looked at, and soon within or beyond it
+TEST(FixWallGranNear, CentersOnTheSurfaceOfARegion)
+{
+  EXPECT_EQ(differences(walled("cylinder z 4.2e-3 4.2e-3 4.94975e-3 INF INF units box", steel()), RUNS), 0);
+  EXPECT_EQ(differences(walled("sphere 4.2e-3 4.2e-3 4.2e-3 6.06218e-3 units box", steel()), RUNS), 0);
 }
