@@ -79,7 +79,8 @@ struct PairGranularFused::Waiting {
 /* ---------------------------------------------------------------------- */
 
 PairGranularFused::PairGranularFused(LAMMPS *_lmp) :
-    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), laws_made(0)
+    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), laws_made(0),
+    size_kept(0)
 {
 }
 
@@ -96,7 +97,14 @@ void PairGranularFused::coeff(int narg, char **arg)
 void PairGranularFused::init_style()
 {
   laws_known = false;
+  const bool first = !fix_history;
   PairGranular::init_style();
+  if (first) size_kept = size_history;
+  if (size_history != size_kept)    // LAMMPS would write beyond it, or take one contact's for another's
+    error->all(FLERR,
+               "Pair granular keeps {} values of each contact since its first run, and now has models with {}: give "
+               "their pair_coeff before it, or pair_style none before pair_style granular",
+               size_kept, size_history);
 }
 
 void PairGranularFused::reset_dt()

@@ -214,6 +214,21 @@ TEST(PairGranularFused, BetweenSteps)
   EXPECT_EQ(differences(shaken_box(both), {"run 100", "pair_coeff 1 1" + steel("1e8", "0.2") + "\nrun 100"}), 0);
 }
 
+// LAMMPS gives contacts room for their history once
+TEST(PairGranularFused, HistoryOfAnotherLength)
+{
+  Deck deck;
+  deck(shaken_box(GRANULAR + steel()));
+  deck("run 10");
+  const std::string adhesive = "pair_coeff * *" + sticky();
+  EXPECT_NE(deck.attempt("pair_style granular\n" + adhesive + "\nrun 0").find("keeps 3 values"), std::string::npos);
+  deck("pair_style none\npair_style granular\n" + adhesive + "\nrun 10");
+  deck("pair_coeff 1 1" + steel() + "\nrun 10");
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel()),
+                        {"run 100", "pair_style none\n" + GRANULAR + sticky() + "\nrun 100", "run 100"}),
+            0);
+}
+
 // written by one, read by the other: contacts of pairs and of walls go on as they were
 TEST(PairGranularFused, RestartFilesBothWays)
 {
