@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 using namespace LAMMPS_NS;
@@ -55,6 +56,38 @@ class Frame {
   }
 };
 
+// Stands for a region that has moved already, where LAMMPS would move it once more: a variable may give something else
+// the second time, above all one that asks for groups while atoms are hidden. Has no other use than that of
+// fix wall/gran/region.
+class Moved : public Region {
+ public:
+  Moved(LAMMPS *_lmp, Region *&_place) : Region(_lmp, 2, NAMES), place(_place), region(_place)
+  {
+    dynamic = region->dynamic;
+    contact = region->contact;
+    place = this;
+  }
+  ~Moved() { place = region; }
+  Moved(const Moved &) = delete;
+  Moved &operator=(const Moved &) = delete;
+
+  // virtual in LAMMPS since 4Jul2026: before, regions that move are left to LAMMPS
+  void prematch() {}
+  int match(double x, double y, double z) { return region->match(x, y, z); }
+  int surface(double x, double y, double z, double reach) { return region->surface(x, y, z, reach); }
+  void set_velocity() { region->set_velocity(); }
+  void velocity_contact(double *of_wall, double *x, int k) { region->velocity_contact(of_wall, x, k); }
+
+  int inside(double x, double y, double z) { return region->inside(x, y, z); }
+  int surface_interior(double *x, double reach) { return region->surface_interior(x, reach); }
+  int surface_exterior(double *x, double reach) { return region->surface_exterior(x, reach); }
+
+ private:
+  static inline char name[] = "moved";
+  static inline char *NAMES[] = {name, name};
+  Region *&place, *const region;
+};
+
 }    // namespace
 
 // squares of how far atoms have come from places, as a region sees both
@@ -93,7 +126,7 @@ void FixWallGranRegionNear::init()
 
 /* ----------------------------------------------------------------------
    an atom off the region is near: LAMMPS looks at it again when it comes back. LAMMPS knows no contact on the axis of a
-   cylinder: look beside the place.
+   cylinder: look beside the place, too.
 ------------------------------------------------------------------------- */
 
 void FixWallGranRegionNear::look_at(int i, const Vector &place, double margin)
@@ -101,7 +134,8 @@ void FixWallGranRegionNear::look_at(int i, const Vector &place, double margin)
   constexpr double BESIDE = 1.0e-3;
   const double *x = atom->x[i], radius = atom->radius[i], off = BESIDE * margin;
   const double reach = radius + model->pulloff_distance(radius, 0.0) + margin + 2.0 * off;
-  near[i] = !region->match(x[0], x[1], x[2]) || region->surface(x[0] + off, x[1] + off, x[2] + off, reach) > 0;
+  near[i] = !region->match(x[0], x[1], x[2]) || region->surface(x[0], x[1], x[2], reach) > 0 ||
+      region->surface(x[0] + off, x[1] + off, x[2] + off, reach) > 0;
   radii[i] = radius;
   places[0][i] = place.x;
   places[1][i] = place.y;
@@ -162,6 +196,8 @@ void FixWallGranRegionNear::post_force(int vflag)
     return;
   }
   find_near();
+  std::optional<Moved> moved;
+  if (region->dynamic) moved.emplace(lmp, region);
   const AtomsShown shown(atom, groups);
   FixWallGranRegion::post_force(vflag);
 }
