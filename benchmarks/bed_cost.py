@@ -22,14 +22,12 @@ import statistics
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 import pair_cost
+from deck import BUILD, changed, read
 from machine import description
 
-ROOT = Path(__file__).resolve().parents[1]
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
 LMP = BUILD / "bin/lmp-dust"
 DUST = (
     "fix dust all dust/detach texture monolayer 20e-6 coverage 0.2 seed 1 orientation random 1 stiffen 1000 rows no\n"
@@ -95,15 +93,12 @@ def compare(deck: str, fix: str, unfix: str, pairs: int, steps: int, carriers: i
     }
 
 
-def drum_costs(edit: Callable[[str], str], more: tuple[str, ...] = ("",), pairs: int = 7) -> list[dict[str, float]]:
-    """in.drum, edited, for each of `more` keywords of the fix."""
-    text = edit((ROOT / "lammps-inputs/in.drum").read_text())
+def drum_costs(text: str, carriers: int, more: tuple[str, ...] = ("",), pairs: int = 7) -> list[dict[str, float]]:
+    """A deck made of in.drum, for each of `more` keywords of the fix."""
     fix = re.search(r"^fix +dust (.*&\n)*.*\n", text, re.MULTILINE)[0]
     fall = re.findall(r"^fix +fall .*\n", text, re.MULTILINE)[-1]
-    carriers = int(re.search(r"^variable carriers +index (\d+)", text, re.MULTILINE)[1])
-    text = re.sub(r"^plugin load.*\n", "", text.replace(fix, ""), flags=re.MULTILINE)
-    deck = text.split('if "$(is_defined(variable,dump))"')[0]
-    deck = re.sub(r" f_dust\S*", "", deck) + "thermo 1000000\nrun 3000\n"
+    deck = changed(text, re.escape(fix)).split('if "$(is_defined(variable,dump))"')[0]
+    deck = changed(deck, r" f_dust\S*", times=None) + "thermo 1000000\nrun 3000\n"
     return [
         # gravity stands after the fix
         compare(deck, f"unfix fall\n{fix.rstrip()} {words}\n{fall}", "unfix dust\n", pairs, 200, carriers)
@@ -111,16 +106,14 @@ def drum_costs(edit: Callable[[str], str], more: tuple[str, ...] = ("",), pairs:
     ]
 
 
+TIMESTEP = 3e-6
 COUNTS = ("counts no", "counts yes")
 
 
 def drum() -> dict[str, dict[str, float]]:
-    def edit(deck: str) -> str:
-        for name, value in {"carriers": "5000", "drum": "0.06", "settle": "0.02"}.items():
-            deck = re.sub(rf"^(variable {name} +index) \S+", rf"\1 {value}", deck, flags=re.MULTILINE)
-        return deck
-
-    return dict(zip(COUNTS, drum_costs(edit, COUNTS), strict=True))
+    carriers = 5000
+    text = read("in.drum", carriers=carriers, drum=0.06, settle=0.02, timestep=TIMESTEP)
+    return dict(zip(COUNTS, drum_costs(text, carriers, COUNTS), strict=True))
 
 
 def bed(file: Path | None) -> dict[str, dict[str, float]]:
@@ -143,13 +136,11 @@ def bed(file: Path | None) -> dict[str, dict[str, float]]:
 
 
 def sizes() -> dict[str, float | dict[str, float]]:
-    def edit(deck: str) -> str:
-        deck = re.sub(r"^(variable carrier_diameter +index) \S+", r"\1 2e-3", deck, flags=re.MULTILINE)
-        deck = re.sub(r"^(variable drum +index) \S+", r"\1 0.133", deck, flags=re.MULTILINE)
-        anew = "variable size atom random(1e-3,2e-3,1)\nset type 1 diameter v_size\nset type 1 density 7700\n"
-        return re.sub(r"^(set +group all diameter.*\n)", rf"\1{anew}", deck, flags=re.MULTILINE)
-
-    many, one = drum_costs(edit, ("sizes 0.05", "sizes 1"))
+    carriers = 20_000
+    text = read("in.drum", carriers=carriers, carrier_diameter=2e-3, drum=0.133, timestep=TIMESTEP)
+    anew = "variable size atom random(1e-3,2e-3,1)\nset type 1 diameter v_size\nset type 1 density 7700\n"
+    text = changed(text, r"^(?=group +carriers )", anew)
+    many, one = drum_costs(text, carriers, ("sizes 0.05", "sizes 1"))
     key = "nanoseconds_per_carrier_and_step_with"
     # each against its own segments without the fix: the two follow each other
     against_none = [row[key] / row[f"{key}out"] for row in (many, one)]

@@ -20,7 +20,13 @@ from matplotlib.colors import LogNorm
 from PIL import Image
 
 GRAINS = 4500
-EXTRA = {"drum": {"turns": 0.5}, "drop": {"field": "field"}, "sieve": {}, "pour": {}, "chute": {}}
+EXTRA = {
+    "drum": {"turns": 0.5, "timestep": 3e-6},
+    "drop": {"field": "field", "timestep": 2e-6},
+    "sieve": {"timestep": 1.5e-6},
+    "pour": {"timestep": 2e-6},
+    "chute": {"timestep": 2e-6},
+}
 WALL = {"color": "0.35", "linewidth": 1.2}
 
 

@@ -18,11 +18,12 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from deck import BUILD, ROOT, changed, read
 from machine import description
 
-ROOT = Path(__file__).resolve().parents[1]
-LMP = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build")) / "bin/lmp-dust"
+LMP = BUILD / "bin/lmp-dust"
 ROWS = " ".join(f"f_dust[{i}]" for i in range(1, 12))
+TIMESTEP = "2e-6"  # s
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
@@ -31,13 +32,11 @@ def run(carriers: int, ranks: int = 1, fall: str = "", **variables: str) -> dict
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.drop"
         # every detachment, to the last digit
-        dump = f"{fall}\n\\1dump rows all local ${{every}} rows {ROWS}\ndump_modify rows format float %.17g\n"
-        text, n = re.subn(r"^(fix +field .*\n)", dump, (ROOT / "lammps-inputs/in.drop").read_text(), flags=re.MULTILINE)
-        assert n == 1
-        deck.write_text(text)
+        dump = f"{fall}\ndump rows all local ${{every}} rows {ROWS}\ndump_modify rows format float %.17g\n"
+        deck.write_text(changed(read("in.drop"), r"^(?=fix +field )", dump))
         command = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-np", str(ranks)]
         command += [str(LMP), "-in", str(deck), "-log", "none", "-var", "carriers", str(carriers)]
-        for name, value in variables.items():
+        for name, value in {"timestep": TIMESTEP, **variables}.items():
             command += ["-var", name, value]
         done = subprocess.run(command, cwd=folder, env=os.environ | AS_ROOT, capture_output=True, text=True, check=True)
         masses = re.search(r"at rest (\S+) kg came off, by the fall (\S+) kg of (\S+) kg", done.stdout)
@@ -90,8 +89,7 @@ def main() -> None:
     args = parser.parse_args()
     result: dict = {**description(LMP), "carriers": args.carriers, "steps_at_rest": args.steps}
 
-    # in.drop has steps of 2 us
-    still = run(args.carriers, rest=str(2e-6 * args.steps), height="0", splash="0")
+    still = run(args.carriers, rest=str(float(TIMESTEP) * args.steps), height="0", splash="0")
     result["mass_at_rest"] = still["rest"]
     print(f"at rest for {args.steps} steps: {still['rest']} kg", flush=True)
 

@@ -1,6 +1,7 @@
 """Runs decks for the benchmarks, and writes their tables."""
 
 import os
+import re
 import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -29,6 +30,30 @@ def run(deck: str, folder: Path | None = None, *, log: str = "none", **variables
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)} failed:\n{done.stdout[-2000:]}")
     return done.stdout
+
+
+def read(deck: str, **variables: object) -> str:
+    """The text of a deck of ``lammps-inputs``, with values of its variables in front: those win, as with ``-var``."""
+    values = "".join(f"variable {name} index {value}\n" for name, value in variables.items())
+    return values + (INPUTS / deck).read_text()
+
+
+def changed(text: str, pattern: str, by: str = "", times: int | None = 1) -> str:
+    """A deck with other lines, where no variable does.
+
+    Args:
+        text: the deck.
+        pattern: a regular expression, in which ^ and $ are the ends of lines.
+        by: what stands there then, as it is.
+        times: how often the pattern must be found; any number above 0 if ``None``.
+
+    Raises:
+        ValueError: it is found another number of times.
+    """
+    result, found = re.subn(pattern, lambda _: by, text, flags=re.MULTILINE)
+    if not found or (times is not None and found != times):
+        raise ValueError(f"{pattern} stands {found} times in the deck")
+    return result
 
 
 def table(head: Iterable[object], rows: Iterable[Iterable[object]]) -> Iterator[str]:

@@ -11,17 +11,15 @@ Instructions are counted besides if valgrind is there: they do not depend on the
 
 import argparse
 import json
-import os
 import re
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 
+from deck import BUILD, changed, read
 from machine import description
 
-ROOT = Path(__file__).resolve().parents[1]
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
 LMP = BUILD / "bin/lmp-dust"
 CASES = {
     "free flight": {"flight": "400000", "limit": "200000"},
@@ -33,10 +31,10 @@ CASES = {
 
 def decks(folder: Path) -> dict[str, Path]:
     """in.impacts without its stop and its results, as it is and without the fix."""
-    text = (ROOT / "lammps-inputs/in.impacts").read_text()
-    text = re.sub(r"^(plugin load|fix +stop|variable +finished|write_dump).*\n", "", text, flags=re.MULTILINE)
-    without = re.sub(r"^fix +dust (.*&\n)*.*\n", "", text, flags=re.MULTILINE)
-    without = re.sub(r" f_dust\S*", "", without)
+    text = changed(read("in.impacts"), r"^(plugin load|fix +stop|variable +finished).*\n", times=3)
+    text = changed(text, r"^write_dump (.*&\n)*.*\n")
+    without = changed(text, r"^fix +dust (.*&\n)*.*\n")
+    without = changed(without, r" f_dust\S*", times=None)
     paths = {"with": folder / "in.with", "without": folder / "in.without"}
     paths["with"].write_text(text)
     paths["without"].write_text(without)

@@ -14,31 +14,19 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from fix_cost import LMP, ROOT, command, instructions
+from deck import read
+from fix_cost import LMP, command, instructions
 from machine import description
 
 LAWS = ("impulse", "estimate")
 DRUM = {"carriers": "1000", "drum": "0.04", "lifter": "2e-3", "rate": "180", "turns": "0.3", "settle": "0.02"}
+DRUM |= {"timestep": "3e-6"}
 ROUGH = {"angle": "60", "wall_friction": "0.3"}
 CASES = {
     "in.impacts": ("in.impacts", {}),
     "in.impacts, 60 degrees, wall friction 0.3": ("in.impacts", ROUGH),
     "in.drum, 1000 carriers": ("in.drum", DRUM),
 }
-
-
-def deck_with(law: str, name: str, folder: Path) -> Path:
-    """The deck with a law; one that does not name it has the default."""
-    text = (ROOT / "lammps-inputs" / name).read_text()
-    if "tangential       index impulse" in text:
-        text = text.replace("tangential       index impulse", f"tangential index {law}")
-    else:
-        text = text.replace("rows no", f"rows no tangential {law}")
-    if f" {law}" not in text:
-        raise RuntimeError(f"{name}: no place for the law")
-    path = folder / f"{name}.{law}"
-    path.write_text(text)
-    return path
 
 
 def processor_seconds(deck: Path, variables: dict[str, str]) -> float:
@@ -55,14 +43,16 @@ def main() -> None:
     result: dict = {**description(LMP), "repeats": args.repeat}
     with tempfile.TemporaryDirectory() as folder:
         for case, (name, variables) in CASES.items():
-            paths = {law: deck_with(law, name, Path(folder)) for law in LAWS}
+            path = Path(folder) / name  # what LAMMPS writes goes beside it
+            path.write_text(read(name))
+            cases = {law: variables | {"tangential": law} for law in LAWS}
             times: dict[str, list[float]] = {law: [] for law in LAWS}
             for _ in range(args.repeat):
-                for law, path in paths.items():
-                    times[law].append(processor_seconds(path, variables))
+                for law, words in cases.items():
+                    times[law].append(processor_seconds(path, words))
             row: dict = {"processor_seconds": {law: min(times[law]) for law in LAWS}}
             if name == "in.impacts":
-                row["instructions_fix"] = {law: instructions(path, variables)[0] for law, path in paths.items()}
+                row["instructions_fix"] = {law: instructions(path, words)[0] for law, words in cases.items()}
             result[case] = row
             shares = {what: values["impulse"] / values["estimate"] for what, values in row.items()}
             print(f"{case}: impulse/estimate", *(f"{what} {share:.3f}" for what, share in shares.items()), flush=True)

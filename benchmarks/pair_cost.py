@@ -11,8 +11,10 @@ bed: 20,000 carriers that lie still on a floor, periodic to the sides, for 500 s
 in two minutes; `--bed FILE` keeps where they lie, or reads it if it is there. LAMMPS' granular has its own
 coeff_restitution with limit_damping; gran/hertz/history and LIGGGHTS' hertz with tangential history have the same
 stiffness and friction. Their damping is another, which in a bed at rest costs the same.
-resolved: in.impact.resolved, in free flight at rest, where each grain has one contact, and whole. Beside the processes,
-Pair time by steps and grains at rest. The stock one is that of resolved_cost.py.
+resolved: in.impact.resolved, in free flight at rest, where each grain has one contact, and whole. At rest the loop
+alone: what 2500 steps take more than 500, by steps and grains, so that start-up cancels, and in it LAMMPS' Pair time.
+The stock contact is that of resolved_cost.py, those of LIGGGHTS and YADE are told in other_programs.py. A program that
+is not installed (Debian: liggghts, yade) is left out.
 """
 
 import argparse
@@ -23,14 +25,18 @@ import shutil
 import statistics
 import subprocess
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
+import other_programs
+from deck import INPUTS, PLUGIN
 from machine import description
-from resolved_cost import INPUTS, LMP, PLUGIN, at_rest, stock, uncounted
+from resolved_cost import LMP, at_rest, stock, uncounted
 
 CARRIERS = 20_000
 STEPS = 500  # of the bed
-FLIGHT = 2500  # of the impact at rest
+FLIGHT, FEW = 2500, 500  # of the impact at rest
+GRAINS = 4500
 KN, KT = 1.5384615384615e8, 1.9004524886878e8  # of hertz/material 2.1e8 with nu 0.3: 4/3 E*, 8 G*
 OURS = "hertz/material 2.1e8 {e} 0.3 tangential mindlin NULL 0.0 0.3 damping coeff_restitution/limited"
 OWN = "hertz/material 2.1e8 0.5 0.3 tangential mindlin NULL 0.0 0.3 damping coeff_restitution limit_damping"
@@ -177,7 +183,7 @@ def bed(folder: Path, repeat: int, before: Path | None, kept: Path | None) -> di
         variants["before"] = lammps(ours, before)
     variants["LAMMPS granular"] = lammps(own)
     variants["LAMMPS gran/hertz/history"] = lammps(fixed)
-    if shutil.which("liggghts"):
+    if other_programs.is_there("liggghts"):
         variants["LIGGGHTS"] = ["liggghts", "-in", str(write(folder, "liggghts", LIGGGHTS)), "-log", "none"]
     return {
         "carriers": CARRIERS,
@@ -186,18 +192,57 @@ def bed(folder: Path, repeat: int, before: Path | None, kept: Path | None) -> di
     }
 
 
+def by_steps(variants: dict[str, Callable[[int], list[str]]], repeat: int, folder: Path) -> dict[str, dict]:
+    """As `in_turn`, of the loop at rest alone: what FLIGHT steps take more than FEW, so that the start cancels."""
+    loops: dict[str, list[float]] = {name: [] for name in variants}
+    pairs: dict[str, list[float]] = {name: [] for name in variants}
+    contacts: dict[str, int] = {}
+    for _ in range(repeat):
+        for name, command in variants.items():
+            few, _ = cpu_seconds(command(FEW), folder)
+            seconds, text = cpu_seconds(command(FLIGHT), folder)
+            scale = 1e9 / GRAINS
+            loops[name].append(scale * (seconds - few) / (FLIGHT - FEW))
+            pairs[name].append(scale * pair_seconds(text) / FLIGHT)
+            if told := re.search(r"^contacts: (\d+)", text, re.MULTILINE):
+                contacts[name] = int(told[1])
+            print(f"{name}: {loops[name][-1]:.0f} ns per contact and step", flush=True)
+    ours = next(iter(variants))
+    result = {}
+    for name, made in loops.items():
+        ratios = [a / b for a, b in zip(loops[ours], made, strict=True)]
+        result[name] = {
+            "ns_per_contact_and_step": statistics.median(made),
+            "least_and_largest_ns": [min(made), max(made)],
+            "ours_against_it": statistics.median(ratios),
+            "least_and_largest": [min(ratios), max(ratios)],
+        }
+        if all(pairs[name]):
+            result[name]["ns_in_pair"] = statistics.median(pairs[name])
+            result[name]["ours_against_it_in_pair"] = statistics.median(
+                a / b for a, b in zip(pairs[ours], pairs[name], strict=True)
+            )
+        if name in contacts:
+            result[name]["contacts_in_the_end"] = contacts[name]
+    return result
+
+
 def resolved(folder: Path, repeat: int, before: Path | None, _: Path | None) -> dict:
     text = uncounted((INPUTS / "in.impact.resolved").read_text())
-    decks = {"ours": at_rest(text), "LAMMPS jkr, sds": at_rest(stock(text))}
-    paths = {name: write(folder, f"rest{k}", deck) for k, (name, deck) in enumerate(decks.items())}
-    rest = {"rest": str(FLIGHT)}
-    variants = {"ours": lammps(paths["ours"], PLUGIN, **rest)}
+    ours, own = write(folder, "ours", at_rest(text)), write(folder, "own", at_rest(stock(text)))
+    dump = "write_dump all custom grains type x y z radius modify format float %.17g\n"
+    cpu_seconds(lammps(write(folder, "start", at_rest(text) + dump), PLUGIN, rest="0"), folder)
+    variants = {"ours": lambda steps: lammps(ours, PLUGIN, rest=str(steps))}
     if before:
-        variants["before"] = lammps(paths["ours"], before, **rest)
-    variants["LAMMPS jkr, sds"] = lammps(paths["LAMMPS jkr, sds"], PLUGIN, **rest)
-    at = in_turn(variants, repeat, folder)
-    for row in at.values():
-        row["ns_per_contact_and_step"] = 1e9 * row["pair_seconds"] / (FLIGHT * 4500)
+        variants["before"] = lambda steps: lammps(ours, before, rest=str(steps))
+    variants["LAMMPS jkr, sds"] = lambda steps: lammps(own, PLUGIN, rest=str(steps))
+    if other_programs.is_there("liggghts"):
+        plain, rolling = other_programs.liggghts(folder), other_programs.liggghts(folder, "epsd2")
+        variants["LIGGGHTS hertz, sjkr"] = lambda steps: [*plain, str(steps)]
+        variants["LIGGGHTS hertz, sjkr, epsd2"] = lambda steps: [*rolling, str(steps)]
+    if other_programs.is_there("yade"):
+        variants["YADE Hertz-Mindlin, DMT"] = lambda steps: other_programs.yade(folder, steps)
+    at = by_steps(variants, repeat, folder)
     whole = {"ours": lammps(INPUTS / "in.impact.resolved", PLUGIN)}
     if before:
         whole["before"] = lammps(INPUTS / "in.impact.resolved", before)

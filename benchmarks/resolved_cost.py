@@ -26,13 +26,10 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from deck import BUILD, INPUTS, PLUGIN, changed
 from machine import description
 
-ROOT = Path(__file__).resolve().parents[1]
-BUILD = Path(os.environ.get("DUST_BUILD_DIR", ROOT / "build"))
 LMP = BUILD / "bin/lmp"
-PLUGIN = BUILD / "plugin/dustplugin.so"
-INPUTS = ROOT / "lammps-inputs"
 CASES = {"8 m/s": {}, "12 m/s, 60 degrees": {"speed": "12", "angle": "60"}}
 SKINS = (0.25, 0.5, 0.75, 1.0, 1.5)
 AT_ONCE = 100  # carriers in in.impacts
@@ -41,17 +38,10 @@ COUNTED = 200  # steps under valgrind
 SKIN_TIME = "9e-6"
 
 
-def replace(text: str, pattern: str, by: str, count: int = 0) -> str:
-    changed, found = re.subn(pattern, lambda _: by, text, flags=re.MULTILINE)
-    if not found or (count and found != count):
-        raise ValueError(f"{pattern} stands {found} times in the deck")
-    return changed
-
-
 def uncounted(text: str) -> str:
     """Without the state of the grains, which LAMMPS' own contact does not have."""
-    text = replace(text, r"^(compute +tied|variable +held|compute +held|variable +ratio) .*\n", "", 4)
-    return replace(text, r"^thermo_style .*c_tied.*", "thermo_style custom step cpu", 1)
+    text = changed(text, r"^(compute +tied|variable +held|compute +held|variable +ratio) .*\n", times=4)
+    return changed(text, r"^thermo_style .*c_tied.*", "thermo_style custom step cpu")
 
 
 def stock(text: str) -> str:
@@ -64,17 +54,18 @@ def stock(text: str) -> str:
     }
     for words, cohesion in ours.items():
         stiffness = cohesion.replace("$(", "$(12*PI*")
-        text = replace(
+        text = changed(
             text,
             re.escape(words),
             f"{cohesion} tangential mindlin NULL 0.0 ${{friction}} damping viscoelastic "
             f"rolling sds {stiffness} 0.0 $(2*v_theta_crit)",
+            times=None,
         )
-    return replace(text, r"\bjkr/vdw\b", "jkr", 4)
+    return changed(text, r"\bjkr/vdw\b", "jkr", times=4)
 
 
 def at_rest(text: str) -> str:
-    text = replace(text, r"^fix +begin .*\n", "", 1)
+    text = changed(text, r"^fix +begin .*\n")
     setup = text.split('print           "Approach"')[0]
     return setup + "velocity all set 0.0 0.0 0.0\nrun ${rest}\n"
 
@@ -93,18 +84,8 @@ def count_contacts(text: str) -> str:
 
 
 def first_microseconds(text: str, skin: float) -> str:
-    text = replace(
-        text,
-        r"^variable +more .*",
-        f"variable more equal round({SKIN_TIME}/v_timestep)",
-        1,
-    )
-    return replace(
-        text,
-        r"^neighbor +\$\{grain_diameter\}",
-        f"neighbor $({skin}*v_grain_diameter)",
-        1,
-    )
+    text = changed(text, r"^variable +more .*", f"variable more equal round({SKIN_TIME}/v_timestep)")
+    return changed(text, r"^neighbor +\$\{grain_diameter\}", f"neighbor $({skin}*v_grain_diameter)")
 
 
 class Run:
@@ -247,7 +228,7 @@ def contact(folder: Path, repeat: int) -> dict:
 
 def impact(folder: Path, repeat: int) -> dict:
     many = (INPUTS / "in.impacts").read_text()
-    many = replace(many, r"^variable +speed +atom .*", "variable speed atom v_fastest", 1)  # all with the same
+    many = changed(many, r"^variable +speed +atom .*", "variable speed atom v_fastest")  # all with the same
     again = write(
         folder,
         "again",

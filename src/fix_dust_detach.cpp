@@ -122,7 +122,7 @@ void FixDustDetach::setup(int /*vflag*/)
     if (f[i][0] != 0.0 || f[i][1] != 0.0 || f[i][2] != 0.0) {
       carriers.state[i] = AT_REST;
       carriers.began[i] = steps;
-      collide(i);
+      if (!checks.holds(atom->mask[i])) collide(i, motion_of(i));
     } else if (!settings.criteria.meet || !carriers.together[i])    // those that are followed know the spin
       spin_off(i);
   }
@@ -206,61 +206,7 @@ void FixDustDetach::initial_integrate(int /*vflag*/)
   checks.step_begins();
 }
 
-/* ----------------------------------------------------------------------
-   here f holds contact forces only
-------------------------------------------------------------------------- */
-
-void FixDustDetach::post_force(int /*vflag*/)
-{
-  checks.look_at_sizes(carriers.radius);
-  if (settings.by_motion) return note_contacts();
-  if (settings.criteria.meet) follow_grains();
-  const int *const mask = atom->mask;
-  const int nlocal = atom->nlocal;
-  const double *f = nlocal ? atom->f[0] : nullptr;
-  const double *const rmass = atom->rmass;
-  const bool spins = settings.rotation && nlocal > 0;
-  const double *torque = spins ? atom->torque[0] : nullptr, *omega = spins ? atom->omega[0] : nullptr;
-  const int *const states = carriers.state;    // does not move in this loop
-
-  const bool busy = collisions.any_taken();
-
-  const auto squared = [](const double *v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-  constexpr int BLOCK = 256;    // spins that are asked for twice are still in the cache then
-  for (int first = 0; first < nlocal; first += BLOCK) {
-    const int last = std::min(first + BLOCK, nlocal);
-    if (spins) carriers.add_turn(first, last);
-    for (int i = first; i < last; i++, f += 3) {
-      // collisions are in no order, and a bed has more of them than a cache: those of atoms to come are fetched now
-      constexpr int AHEAD = 24;
-      if (busy && i + AHEAD < nlocal && states[i + AHEAD] >= 0) {
-        const auto *lines = reinterpret_cast<const char *>(&collisions[states[i + AHEAD]]);
-        __builtin_prefetch(lines, 1);
-        __builtin_prefetch(lines + 64, 1);
-      }
-      // any bit of the three but their signs: one branch for what most carriers do in most steps, fly freely
-      uint64_t x, y, z;
-      std::memcpy(&x, f, sizeof(x));
-      std::memcpy(&y, f + 1, sizeof(y));
-      std::memcpy(&z, f + 2, sizeof(z));
-      const bool touches = (x | y | z) << 1;
-      if (!touches && states[i] <= FREE_FLIGHT) continue;
-      if (touches && states[i] == AT_REST) {    // what most carriers of a bed do
-        const double torque2 = spins ? squared(torque + 3 * i) : 0.0, spin2 = spins ? squared(omega + 3 * i) : 0.0;
-        if (!table_of(i).might_move(squared(f), torque2, spin2, settings.stiffen_time * rmass[i])) continue;
-      }
-      if (!(mask[i] & groupbit) || states[i] == NO_CARRIER) continue;
-      if (touches)
-        collide(i);
-      else if (states[i] >= 0)
-        finish_collision(i, FREE_FLIGHT);
-      else if (states[i] == AT_REST)
-        leave_contact(i);
-    }
-  }
-  if (spins && update->ntimestep % CarrierData::TURN_EVERY == 0) carriers.turn();
-  close_step();
-}
+/* ---------------------------------------------------------------------- */
 
 // all grains that leave in this step have left
 void FixDustDetach::close_step()
@@ -268,113 +214,6 @@ void FixDustDetach::close_step()
   if (update->ntimestep == output->next) carriers.show_standing();
   if (rows.is_open() && update->ntimestep % settings.every == 0) close_window();
   if (settings.lose_mass) tell_ghosts();
-}
-
-/* ----------------------------------------------------------------------
-   as stiff contacts would move carrier i; its spin is half a step behind
-------------------------------------------------------------------------- */
-
-Dust::Motion FixDustDetach::motion_of(int i) const
-{
-  Dust::Motion motion = {};
-  if (carriers.before) {
-    motion = motions.of(i, carriers.before[i], settings.rotation);
-    checks.check_finite(i, motion);
-    return motion;
-  }
-  const double per_mass = settings.stiffen_acceleration / atom->rmass[i];
-  for (int d = 0; d < 3; d++) motion.acceleration[d] = atom->f[i][d] * per_mass;
-  if (settings.rotation) {
-    constexpr double INERTIA = 0.4;    // of a sphere, as in fix nve/sphere
-    const double per_inertia = per_mass / (INERTIA * atom->radius[i] * atom->radius[i]);
-    for (int d = 0; d < 3; d++) {
-      motion.angular_acceleration[d] = atom->torque[i][d] * per_inertia;
-      motion.spin[d] = atom->omega[i][d];
-    }
-  }
-  checks.check_finite(i, motion);
-  return motion;
-}
-
-void FixDustDetach::collide(int i)
-{
-  if (checks.holds(atom->mask[i])) return;
-  const Dust::Motion motion = motion_of(i);
-  if (carriers.state[i] == AT_REST && !table_of(i).may_move(motion)) return;
-  if (carriers.state[i] == FREE_FLIGHT) carriers.began[i] = steps;
-  if (carriers.state[i] < 0) begin_collision(i, motion);
-  Dust::Collision &collision = collisions[carriers.state[i]];
-  if (collision.step(table_of(i), motion, settings.stiffen_time * update->dt, carriers.attached[i], collisions.work)) {
-    checks.grains_left(i, motion.acceleration, course_of(i));
-    if (settings.criteria.meet)
-      collisions.work.detached.clear();    // the end of the collision tells
-    else
-      record(i);
-  }
-  if (settings.criteria.meet && carriers.together[i] && !collision.weak()) stop_following(i);
-  if (!settings.by_motion) checks.watch(i, Dust::dot(motion.acceleration, motion.acceleration), table_of(i).min_hold());
-  const bool grown = collision.grows(table_of(i)) && collision.max_packed_size() > exchange_room;
-  if (settings.emit || grown) make_exchange_room(i);
-  if (collision.at_rest()) finish_collision(i, AT_REST);
-}
-
-DeckChecks::Course FixDustDetach::course_of(int i) const
-{
-  const Dust::Collision &collision = collisions[carriers.state[i]];
-  const Dust::GrainTable &table = table_of(i);
-  return {collision.impulse(), collision.peak_acceleration(), table.min_hold(),
-          table.max_shell() - table.carrier_radius()};
-}
-
-void FixDustDetach::begin_collision(int i, const Dust::Motion &motion)
-{
-  checks.check_size(i, carriers.radius[i]);
-  carriers.state[i] = collisions.take();
-  collisions[carriers.state[i]].begin(carriers.standing(i), motion.spin);
-  make_exchange_room(i);
-}
-
-void FixDustDetach::finish_collision(int i, int next)
-{
-  Dust::Collision &collision = collisions[carriers.state[i]];
-  const Dust::Motion motion = motion_of(i);
-  // a strong one has ended the following: this one is passed over
-  const bool followed = settings.criteria.meet && carriers.together[i];
-  if (!followed && collision.end(table_of(i), motion.spin, carriers.attached[i].data(), collisions.work) &&
-      !settings.criteria.meet)
-    record(i);
-  array_atom[i][DetachAtom::PEAK_ACCELERATION] = collision.peak_acceleration();
-  checks.collision_over(i, next == FREE_FLIGHT ? steps - carriers.began[i] : 0.0, course_of(i));
-  mine.collisions += 1.0;
-  if (!settings.criteria.meet) mine.north += collision.lost_north(table_of(i), carriers.attached[i].data());
-  mine.sliding += collision.grains_that(Dust::SLIDING, table_of(i), carriers.attached[i].data());
-  mine.rolling += collision.grains_that(Dust::ROLLING, table_of(i), carriers.attached[i].data());
-  if (settings.criteria.meet && !collision.weak()) begin_following(i, motion.spin);
-  collisions.give_back(carriers.state[i]);
-  carriers.state[i] = next;
-  if (next == FREE_FLIGHT) leave_contact(i);
-}
-
-void FixDustDetach::leave_contact(int i)
-{
-  carriers.state[i] = FREE_FLIGHT;
-  array_atom[i][DetachAtom::CONTACT_TIME] = (steps - carriers.began[i]) * settings.stiffen_time * update->dt;
-}
-
-/* ----------------------------------------------------------------------
-   a carrier that nothing touches, but that was given too fast a spin
-------------------------------------------------------------------------- */
-
-void FixDustDetach::spin_off(int i)
-{
-  const Dust::Motion motion = motion_of(i);
-  if (!table_of(i).may_spin_off(Dust::dot(motion.spin, motion.spin))) return;
-  begin_collision(i, motion);
-  if (collisions[carriers.state[i]].step(table_of(i), motion, settings.stiffen_time * update->dt, carriers.attached[i],
-                                         collisions.work))
-    record(i);
-  collisions.give_back(carriers.state[i]);
-  carriers.state[i] = FREE_FLIGHT;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -88,7 +88,15 @@ class FixDustDetach : public Fix {
   // collisions under way on this rank
   Dust::CollisionPool collisions;
   Dust::Motion motion_of(int) const;
-  void collide(int);
+  struct Busy {    // those of a block of atoms that something may happen to in this step
+    static constexpr int BLOCK = 64, GOES = 3;
+    int atoms[BLOCK], count = 0;
+  };
+  void find_busy(int block, Busy &);
+  void fetch_motion(const Busy &) const;
+  void fetch(const Busy &, Dust::Collision::Fetch) const;
+  void attend(const Busy &);
+  void collide(int, const Dust::Motion &);
   void begin_collision(int, const Dust::Motion &);
   void finish_collision(int, int);
   void leave_contact(int);

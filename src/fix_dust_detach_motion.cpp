@@ -47,14 +47,18 @@ void FixDustDetach::end_of_step()
 
 void FixDustDetach::follow(int i)
 {
+  const bool held = checks.holds(atom->mask[i]);
   bool acts = touched[i];
+  if (acts && held) return;
+  const Dust::Motion motion = motion_of(i);
   if (!acts) {
-    Dust::Motion motion = motion_of(i);
-    for (double &w : motion.spin) w = 0.0;
-    acts = table_of(i).may_move(motion);
+    Dust::Motion straight = motion;
+    for (double &w : straight.spin) w = 0.0;
+    acts = table_of(i).may_move(straight);
   }
+  if (acts && held) return;
   if (acts)
-    collide(i);
+    collide(i, motion);
   else if (carriers.state[i] >= 0)
     finish_collision(i, FREE_FLIGHT);
   else if (carriers.state[i] == AT_REST)

@@ -5,6 +5,7 @@
 #include "fix_wall_gran_region_near.h"
 
 #include "atoms_shown.h"
+#include "core/lanes.h"
 #include "gran_sub_mod_dust_normal.h"
 
 #include "atom.h"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 using namespace LAMMPS_NS;
@@ -43,7 +45,7 @@ class Frame {
     axes[1] = seen(region, {0.0, 1.0, 0.0}) - origin;
     axes[2] = seen(region, {0.0, 0.0, 1.0}) - origin;
   }
-  Vector of(const double *x) const { return origin + x[0] * axes[0] + x[1] * axes[1] + x[2] * axes[2]; }
+  DUST_IN_LANES Vector of(const double *x) const { return origin + x[0] * axes[0] + x[1] * axes[1] + x[2] * axes[2]; }
 
  private:
   Vector origin, axes[3];
@@ -54,7 +56,51 @@ class Frame {
   }
 };
 
+// Stands for a region that has moved already, where LAMMPS would move it once more: a variable may give something else
+// the second time, above all one that asks for groups while atoms are hidden. Has no other use than that of
+// fix wall/gran/region.
+class Moved : public Region {
+ public:
+  Moved(LAMMPS *_lmp, Region *&_place) : Region(_lmp, 2, NAMES), place(_place), region(_place)
+  {
+    dynamic = region->dynamic;
+    contact = region->contact;
+    place = this;
+  }
+  ~Moved() { place = region; }
+  Moved(const Moved &) = delete;
+  Moved &operator=(const Moved &) = delete;
+
+  // virtual in LAMMPS since 4Jul2026: before, regions that move are left to LAMMPS
+  void prematch() {}
+  int match(double x, double y, double z) { return region->match(x, y, z); }
+  int surface(double x, double y, double z, double reach) { return region->surface(x, y, z, reach); }
+  void set_velocity() { region->set_velocity(); }
+  void velocity_contact(double *of_wall, double *x, int k) { region->velocity_contact(of_wall, x, k); }
+
+  int inside(double x, double y, double z) { return region->inside(x, y, z); }
+  int surface_interior(double *x, double reach) { return region->surface_interior(x, reach); }
+  int surface_exterior(double *x, double reach) { return region->surface_exterior(x, reach); }
+
+ private:
+  static inline char name[] = "moved";
+  static inline char *NAMES[] = {name, name};
+  Region *&place, *const region;
+};
+
 }    // namespace
+
+// squares of how far atoms have come from places, as a region sees both
+DUST_LANES static void find_moved(const double *x, int n, const Frame &seen, const double *const *places,
+                                  double *moved2)
+{
+  const Frame frame = seen;
+  const double *a = places[0], *b = places[1], *c = places[2];
+  for (int i = 0; i < n; i++) {
+    const Vector moved = frame.of(x + 3 * i) - Vector{a[i], b[i], c[i]};
+    moved2[i] = dot(moved, moved);
+  }
+}
 
 /* ---------------------------------------------------------------------- */
 
@@ -75,44 +121,69 @@ void FixWallGranRegionNear::init()
   const bool still = !region->dynamic || see(region, origin, 0);
   skips =
       simple && still && !region->openflag && !region->varshape && !heat_flag && (adhesive || !model->beyond_contact);
-  looks.clear();
+  near.clear();
 }
 
 /* ----------------------------------------------------------------------
    an atom off the region is near: LAMMPS looks at it again when it comes back. LAMMPS knows no contact on the axis of a
-   cylinder: look beside the place.
+   cylinder: look beside the place, too.
 ------------------------------------------------------------------------- */
 
-FixWallGranRegionNear::Look FixWallGranRegionNear::look_at(int i, const Vector &place, double margin)
+void FixWallGranRegionNear::look_at(int i, const Vector &place, double margin)
 {
   constexpr double BESIDE = 1.0e-3;
   const double *x = atom->x[i], radius = atom->radius[i], off = BESIDE * margin;
   const double reach = radius + model->pulloff_distance(radius, 0.0) + margin + 2.0 * off;
-  const bool near = !region->match(x[0], x[1], x[2]) || region->surface(x[0] + off, x[1] + off, x[2] + off, reach) > 0;
-  return {place, radius, near};
+  near[i] = !region->match(x[0], x[1], x[2]) || region->surface(x[0], x[1], x[2], reach) > 0 ||
+      region->surface(x[0] + off, x[1] + off, x[2] + off, reach) > 0;
+  radii[i] = radius;
+  places[0][i] = place.x;
+  places[1][i] = place.y;
+  places[2][i] = place.z;
 }
 
 /* ----------------------------------------------------------------------
-   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that is far
-   it clears its history.
+   whether LAMMPS, which takes sines and cosines for each atom that it sees, may find a contact here, or none off the
+   region. The place differs by round-off from where LAMMPS finds the atom.
+------------------------------------------------------------------------- */
+
+bool FixWallGranRegionNear::may_touch(const Vector &place, double radius) const
+{
+  constexpr double BESIDE = 1.0e-6;
+  const double off = BESIDE * radius, reach = radius + model->pulloff_distance(radius, 0.0) + 4.0 * off;
+  double x[3] = {place.x + off, place.y + off, place.z + off};
+  if (region->inside(x[0], x[1], x[2]) != region->interior) return true;
+  return (region->interior ? region->surface_interior(x, reach) : region->surface_exterior(x, reach)) > 0;
+}
+
+/* ----------------------------------------------------------------------
+   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that does not
+   touch it forgets its contacts.
 ------------------------------------------------------------------------- */
 
 void FixWallGranRegionNear::find_near()
 {
   if (region->dynamic_check()) region->prematch();
   const int nlocal = atom->nlocal, *mask = atom->mask;
-  const bool anew = neighbor->ago == 0 || static_cast<int>(looks.size()) != nlocal;
-  const double margin = 0.5 * neighbor->skin;
+  const double *const *x = atom->x, *radius = atom->radius;
+  const bool anew = neighbor->ago == 0 || static_cast<int>(near.size()) != nlocal;
+  const double margin = 0.5 * neighbor->skin, margin2 = margin * margin;
   const Frame frame(region);
-  looks.resize(nlocal);
-  groups.resize(nlocal);
+  for (std::vector<double> *each : {&places[0], &places[1], &places[2], &radii, &moved2}) each->resize(nlocal);
+  near.resize(nlocal);
+  groups.assign(nlocal, 0);
+  const double *const looked_at[3] = {places[0].data(), places[1].data(), places[2].data()};
+  if (!anew && nlocal > 0) find_moved(x[0], nlocal, frame, looked_at, moved2.data());
   for (int i = 0; i < nlocal; i++) {
-    groups[i] = 0;
     if (!(mask[i] & groupbit)) continue;
-    const Vector place = frame.of(atom->x[i]), moved = place - looks[i].place;
-    const bool looks_now = anew || !(dot(moved, moved) < margin * margin) || atom->radius[i] != looks[i].radius;
-    if (looks_now) looks[i] = look_at(i, place, margin);
-    if (looks_now || looks[i].near) groups[i] = mask[i];
+    const bool looks_now = anew || !(moved2[i] < margin2) || radius[i] != radii[i];
+    if (!looks_now && !near[i]) continue;
+    const Vector place = frame.of(x[i]);
+    if (looks_now) look_at(i, place, margin);
+    if (may_touch(place, radius[i]))
+      groups[i] = mask[i];
+    else if (use_history)
+      ncontact[i] = 0;
   }
 }
 
@@ -125,6 +196,8 @@ void FixWallGranRegionNear::post_force(int vflag)
     return;
   }
   find_near();
+  std::optional<Moved> moved;
+  if (region->dynamic) moved.emplace(lmp, region);
   const AtomsShown shown(atom, groups);
   FixWallGranRegion::post_force(vflag);
 }
@@ -133,5 +206,5 @@ void FixWallGranRegionNear::post_force(int vflag)
 
 double FixWallGranRegionNear::memory_usage()
 {
-  return FixWallGranRegion::memory_usage() + double(looks.size() * sizeof(Look) + groups.size() * sizeof(int));
+  return FixWallGranRegion::memory_usage() + double(near.size()) * (5 * sizeof(double) + sizeof(char) + sizeof(int));
 }

@@ -30,16 +30,14 @@ class FixWallGranRegionNear : public FixWallGranRegion {
   double memory_usage() override;
 
  private:
-  // where an atom was, as the region sees it, when its distance was looked at, and whether it was near
-  struct Look {
-    Dust::Vector place;
-    double radius;
-    bool near;
-  };
-  std::vector<Look> looks;
-  std::vector<int> groups;    // of the atoms near the wall, 0 of all others
+  // of each atom: where it was, as the region sees it, when its distance was looked at, its radius then, whether it was
+  // near, and the square of how far it has come since
+  std::vector<double> places[3], radii, moved2;
+  std::vector<char> near;
+  std::vector<int> groups;    // of the atoms that may touch the wall, 0 of all others
   bool skips;                 // whether atoms may be skipped
-  Look look_at(int, const Dust::Vector &, double);
+  void look_at(int, const Dust::Vector &, double);
+  bool may_touch(const Dust::Vector &, double) const;
   void find_near();
 };
 

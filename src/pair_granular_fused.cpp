@@ -26,8 +26,8 @@ using Dust::Vector;
 /* ---------------------------------------------------------------------- */
 
 PairGranularFused::PairGranularFused(LAMMPS *_lmp) :
-    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), margin(0.1), found_at(0),
-    close_known(false)
+    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), size_kept(0), margin(0.1),
+    found_at(0), close_known(false)
 {
 }
 
@@ -44,7 +44,14 @@ void PairGranularFused::coeff(int narg, char **arg)
 void PairGranularFused::init_style()
 {
   laws_known = false;
+  const bool first = !fix_history;
   PairGranular::init_style();
+  if (first) size_kept = size_history;
+  if (size_history != size_kept)    // LAMMPS would write beyond it, or take one contact's for another's
+    error->all(FLERR,
+               "Pair granular keeps {} values of each contact since its first run, and now has models with {}: give "
+               "their pair_coeff before it, or pair_style none before pair_style granular",
+               size_kept, size_history);
 }
 
 void PairGranularFused::reset_dt()

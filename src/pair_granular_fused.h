@@ -39,6 +39,7 @@ class PairGranularFused : public PairGranular {
   std::vector<class ContactLaw> laws;        // one for each of models_list
   std::vector<class ContactLaw *> law_of;    // of two types
   bool laws_known, none_fused, hertz_alone, heats;
+  int size_kept;    // of a contact's history, since there is one
   void read_laws();
   bool left_to_parent() const;
 

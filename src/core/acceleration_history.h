@@ -49,6 +49,12 @@ class AccelerationHistory {
   const Motion &peak() const { return motions[peak_at]; }
   double peak2() const { return size2_of_peak; }    //!< square of its acceleration
   bool any_rotates() const { return any_rotated; }
+  /*! Has what add() compares with brought from memory into the cache */
+  __attribute__((always_inline)) void fetch() const
+  {
+    __builtin_prefetch(motions.data() + peak_at);
+    if (!motions.empty()) __builtin_prefetch(&motions.back(), 1);
+  }
 
   /*! Largest push on a grain, a.n less the centrifugal acceleration; there must be a motion
    *  \param hint  0 at first; keeps the answer's place, which is near that for a similar direction */

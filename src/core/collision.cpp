@@ -74,51 +74,58 @@ void Collision::become_strong(const GrainTable &table, Workspace &work)
 bool Collision::step(const GrainTable &table, const Motion &middle, double dt, std::vector<uint64_t> &attached,
                      Workspace &work)
 {
-  Motion motion = middle;
-  for (int d = 0; d < 3; d++) motion.spin[d] += 0.5 * dt * middle.angular_acceleration[d];
-  const Strength strength = strength_of(table, motion);
+  // the rest of the motion is read where it is: what has just been copied cannot be read in other pieces until the copy
+  // and all that was written before it have come to the cache
+  double spin[3];
+  for (int d = 0; d < 3; d++) spin[d] = middle.spin[d] + 0.5 * dt * middle.angular_acceleration[d];
+  const Strength strength = strength_of(table, middle, spin);
   if (weak()) {
     if (course.activity.has_begun())
       for (int d = 0; d < 3; d++) course.angle[d] += middle.spin[d] * dt;
     if (!strength.may_move) {
-      step_weak(table, motion, strength, dt);
+      step_weak(table, middle, spin, strength, dt);
       return false;
     }
     become_strong(table, work);
   } else
     strong->state.now.turn_by(middle.spin, dt);
 
+  Motion motion = middle;
+  std::copy_n(spin, 3, motion.spin);
   work.losses.clear();
-  step_strong(table, motion, strength, dt, attached.data(), work);
+  step_strong(table, motion, strength, dt, attached, work);
   return !work.losses.empty();
 }
 
-void Collision::add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively)
+void Collision::add(const GrainTable &table, const Motion &motion, const double *spin, double size, double dt,
+                    bool lively)
 {
   course.activity.add(size, lively);
   course.time += dt;
   for (int d = 0; d < 3; d++) course.impulse[d] += motion.acceleration[d] * dt;
   if (!needs_impulses(table)) return;
   if (!impulses) impulses = std::make_unique<ImpulseRecord>();
-  impulses->add(motion.acceleration, motion.spin, dt);
+  impulses->add(motion.acceleration, spin, dt);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void Collision::step_weak(const GrainTable &table, const Motion &motion, const Strength &strength, double dt)
+void Collision::step_weak(const GrainTable &table, const Motion &motion, const double *spin, const Strength &strength,
+                          double dt)
 {
   const bool lively = strength.size2 > course.peak2 || !course.activity.has_begun();
-  add(table, motion, strength.size, dt, lively);
+  add(table, motion, spin, strength.size, dt, lively);
   if (!lively) return;
   course.peak2 = strength.size2;
   course.peak = motion;
+  std::copy_n(spin, 3, course.peak.spin);
   std::copy_n(course.angle, 3, course.peak_angle);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void Collision::step_strong(const GrainTable &table, const Motion &motion, const Strength &strength, double dt,
-                            uint64_t *attached, Workspace &work)
+                            std::vector<uint64_t> &attached, Workspace &work)
 {
   Strong &s = *strong;
   const AccelerationHistory &history = s.history;
@@ -127,7 +134,7 @@ void Collision::step_strong(const GrainTable &table, const Motion &motion, const
     s.state.lively.time = course.time;
     std::copy_n(course.impulse, 3, s.state.lively.impulse);
   }
-  add(table, motion, strength.size, dt, lively);
+  add(table, motion, motion.spin, strength.size, dt, lively);
   if (lively) std::copy_n(motion.spin, 3, s.state.lively.spin);
 
   const bool rotates = strength.rotation > ROUND_OFF * strength.size;
@@ -141,8 +148,8 @@ void Collision::step_strong(const GrainTable &table, const Motion &motion, const
   if (!rotates && is_between(part, history.peak2()) && !(history.any_rotates() && history.peak().rotates())) return;
 
   if (table.criteria().ibrahim || (may_lift && !holds_as_at_peak(table, history, m, part)))
-    find_losses(table, m, attached, work);
-  for (const Loss &loss : work.losses) lose(table, loss, m, attached, work);
+    find_losses(table, m, attached.data(), work);
+  for (const Loss &loss : work.losses) lose(table, loss, m, attached.data(), work);
   s.history.add(m, strength.size2, rotates);
 }
 

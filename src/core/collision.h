@@ -38,8 +38,8 @@ struct Detachment {
   double carrier_velocity[3], carrier_place[3];
 };
 
-/*! What is kept of a collision from when inertia could make a grain slide */
-struct Strong {
+/*! What is kept of a collision from when inertia could make a grain slide; what each step needs comes first */
+struct alignas(64) Strong {
   struct Moment {
     double time;
     double impulse[3], spin[3];    // as of Collision
@@ -49,8 +49,8 @@ struct Strong {
     Moment lively;           // at the last lively step
     double count[NMODES];    // of the grains that have left, those that had met SLIDING and ROLLING
   } state;
-  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
   AccelerationHistory history;
+  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
   LiftOffSchedule schedule;
 };
 
@@ -99,6 +99,23 @@ class alignas(64) Collision {
    *  \return          true if any left */
   bool step(const GrainTable &table, const Motion &middle, double dt, std::vector<uint64_t> &attached, Workspace &work);
 
+  /*! Has what a step needs brought from memory into the cache. Each go needs what the one before has asked for: between
+   *  them is the time to ask for that of others. In line, as calls of a function that only fetches are left out */
+  enum class Fetch { FIRST, SECOND, THIRD };
+  __attribute__((always_inline)) void fetch(Fetch go) const
+  {
+    constexpr int WRITE = 1, LINE = 64;
+    const auto *own = reinterpret_cast<const char *>(this), *part = reinterpret_cast<const char *>(strong.get());
+    if (go == Fetch::FIRST)
+      for (int line : {0, 1}) __builtin_prefetch(own + LINE * line, WRITE);
+    else if (part && go == Fetch::SECOND)
+      for (int line : {0, 1, 2, 3}) __builtin_prefetch(part + LINE * line, WRITE);
+    else if (part)
+      strong->history.fetch();
+    else if (go == Fetch::SECOND)
+      for (int line : {2, 3}) __builtin_prefetch(own + LINE * line, WRITE);
+  }
+
   /*! Whether it has come to rest though the contact lasts */
   bool at_rest() const { return course.activity.at_rest(weak()); }
 
@@ -134,11 +151,11 @@ class alignas(64) Collision {
   /*! Whether that may grow from step to step: not while it is weak, unless its law needs its course */
   bool grows(const GrainTable &table) const { return strong || needs_impulses(table); }
   /*! At least that, and told at once */
-  int max_packed_size() const
+  int max_packed_size(const GrainTable &table) const
   {
     constexpr size_t SIZES = 16;    // of all vectors, and other single numbers
     size_t size = SIZES + numbers_of<Course>();
-    if (impulses) size += numbers_of<ImpulseRecord::Span>() * impulses->spans().size();
+    if (needs_impulses(table) && impulses) size += numbers_of<ImpulseRecord::Span>() * impulses->spans().size();
     if (strong)
       size += numbers_of<Strong::State>() + strong->start.size() + numbers_of<Motion>() * strong->history.kept().size();
     return static_cast<int>(size);
@@ -167,10 +184,10 @@ class alignas(64) Collision {
     double size2, size, rotation;    // of the acceleration; at most what rotation adds on any grain
     bool may_move;
   };
-  static Strength strength_of(const GrainTable &table, const Motion &motion)
+  static Strength strength_of(const GrainTable &table, const Motion &motion, const double *spin)
   {
     const double size2 = dot(motion.acceleration, motion.acceleration), size = std::sqrt(size2);
-    const double rotation = table.max_shell() * motion.rotation_bound();
+    const double rotation = table.max_shell() * motion.rotation_bound(spin);
     return {size2, size, rotation, size + rotation > table.moving_force()};
   }
 
@@ -180,10 +197,11 @@ class alignas(64) Collision {
   }
 
   void become_strong(const GrainTable &table, Workspace &work);
-  void add(const GrainTable &table, const Motion &motion, double size, double dt, bool lively);
-  void step_weak(const GrainTable &table, const Motion &motion, const Strength &strength, double dt);
+  void add(const GrainTable &table, const Motion &motion, const double *spin, double size, double dt, bool lively);
+  void step_weak(const GrainTable &table, const Motion &motion, const double *spin, const Strength &strength,
+                 double dt);
   void step_strong(const GrainTable &table, const Motion &motion, const Strength &strength, double dt,
-                   uint64_t *attached, Workspace &work);
+                   std::vector<uint64_t> &attached, Workspace &work);
   void find_losses(const GrainTable &table, const Motion &motion, const uint64_t *attached, Workspace &work);
   void keep_start(const GrainTable &table, const uint64_t *attached);
   PastCollision past_at(const double *spin) const;

@@ -9,8 +9,8 @@ using namespace Dust;
 int CollisionPool::take()
 {
   if (spare.empty()) {
-    collisions.emplace_back();
-    return static_cast<int>(collisions.size()) - 1;
+    if (made % BLOCK == 0) blocks.push_back(std::make_unique<Collision[]>(BLOCK));
+    return static_cast<int>(made++);
   }
   const int number = spare.back();
   spare.pop_back();
@@ -19,20 +19,20 @@ int CollisionPool::take()
 
 void CollisionPool::give_back(int number)
 {
-  collisions[number].release(work);
+  (*this)[number].release(work);
   spare.push_back(number);
 }
 
 void CollisionPool::keep_only(const std::vector<bool> &taken)
 {
   spare.clear();
-  for (size_t k = 0; k < collisions.size(); k++)
+  for (size_t k = 0; k < made; k++)
     if (!taken[k]) give_back(static_cast<int>(k));
 }
 
 double CollisionPool::memory_usage() const
 {
-  double bytes = 0.0;
-  for (const Collision &collision : collisions) bytes += sizeof(collision) + collision.packed_size() * sizeof(double);
+  double bytes = double(blocks.size()) * BLOCK * sizeof(Collision);
+  for (size_t k = 0; k < made; k++) bytes += (*this)[static_cast<int>(k)].packed_size() * sizeof(double);
   return bytes;
 }

@@ -7,7 +7,7 @@
 
 #include "collision.h"
 
-#include <deque>
+#include <memory>
 #include <vector>
 
 namespace Dust {
@@ -26,16 +26,19 @@ class CollisionPool {
    *  \param taken  by number, which ones still have a holder; at least capacity() of them */
   void keep_only(const std::vector<bool> &taken);
 
-  Collision &operator[](int number) { return collisions[number]; }
-  const Collision &operator[](int number) const { return collisions[number]; }
+  Collision &operator[](int number) { return blocks[number / BLOCK][number % BLOCK]; }
+  const Collision &operator[](int number) const { return blocks[number / BLOCK][number % BLOCK]; }
 
-  bool any_taken() const { return spare.size() < collisions.size(); }
-  size_t capacity() const { return collisions.size(); }
+  bool any_taken() const { return spare.size() < made; }
+  size_t capacity() const { return made; }
   double memory_usage() const;    //!< bytes
 
  private:
-  std::deque<Collision> collisions;    // so that more of them move none
-  std::vector<int> spare;              // numbers of those that are not taken
+  // so that more of them move none, and that where one is does not have to be fetched from memory itself
+  static constexpr unsigned BLOCK = 32;
+  std::vector<std::unique_ptr<Collision[]>> blocks;
+  size_t made = 0;           // numbers given out so far
+  std::vector<int> spare;    // those that are not taken
 };
 
 }    // namespace Dust

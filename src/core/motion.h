@@ -30,8 +30,8 @@ struct Motion {
   /*! The same with its vectors along the axes of a body of this orientation */
   Motion in_body(const Quaternion &orientation) const
   {
-    Motion m = *this;
-    if (orientation.is_identity()) return m;
+    if (orientation.is_identity()) return *this;
+    Motion m = {};
     orientation.to_body(acceleration, m.acceleration);
     if (!rotates()) return m;
     orientation.to_body(angular_acceleration, m.angular_acceleration);
@@ -50,7 +50,12 @@ struct Motion {
   bool rotates() const { return dot(angular_acceleration, angular_acceleration) > 0.0 || dot(spin, spin) > 0.0; }
 
   /*! |alpha| + omega^2: times |r|, at least what rotation adds to g */
-  double rotation_bound() const { return std::sqrt(dot(angular_acceleration, angular_acceleration)) + dot(spin, spin); }
+  double rotation_bound() const { return rotation_bound(spin); }
+  /*! The same with another spin */
+  double rotation_bound(const double *omega) const
+  {
+    return std::sqrt(dot(angular_acceleration, angular_acceleration)) + dot(omega, omega);
+  }
 
   /*! Inertia force per mass on a grain that moves with its carrier, g = -(a + alpha x r + omega x (omega x r))
    *  \param n      direction of the grain

@@ -236,8 +236,8 @@ inline Outcome by_collision(const Texture &texture, const GrainTable &table, con
     detached.clear();
     if (handover && k % handover == 0) {
       std::vector<double> buf(collision.packed_size());
-      EXPECT_GE(collision.max_packed_size(), collision.packed_size());
-      EXPECT_LE(collision.max_packed_size(), collision.packed_size() + 16);
+      EXPECT_GE(collision.max_packed_size(table), collision.packed_size());
+      EXPECT_LE(collision.max_packed_size(table), collision.packed_size() + 16);
       Packer packer(buf.data());
       collision.pack(packer);
       Collision other;

@@ -45,7 +45,7 @@ std::map<int, Mode> by_collision(const GrainTable &table, const History &h, int 
     work.detached.clear();
     if (handover && k % handover == 0) {
       std::vector<double> buf(collision.packed_size());
-      EXPECT_GE(collision.max_packed_size(), collision.packed_size());
+      EXPECT_GE(collision.max_packed_size(table), collision.packed_size());
       Packer packer(buf.data());
       collision.pack(packer);
       Collision other;

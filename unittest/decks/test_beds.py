@@ -4,6 +4,7 @@ they show holds.
 Runs the programs of one build: DUST_BUILD_DIR (set by ./bootstrap test), or build/ of this checkout.
 """
 
+import math
 import os
 import re
 import subprocess
@@ -170,6 +171,34 @@ def test_three_sieve_fractions_in_one_fix(tmp_path):
     assert number(r"^off in all: (\S+) of the fine", text) == pytest.approx(off[0], abs=1e-4)
 
 
+def hertz_contact_time(diameter: float, stiffen: float) -> float:
+    """Of two carriers that meet with 1 m/s, without losses."""
+    mass, size, modulus = 7700 * math.pi / 6 * diameter**3 / 2, diameter / 4, 210e9 / stiffen / (2 * (1 - 0.3**2))
+    return 2.868 * (mass**2 / (size * modulus**2)) ** 0.2
+
+
+@pytest.mark.parametrize(
+    ("deck", "steps", "finest", "short"),
+    [
+        ("in.drum", 14, "carrier_diameter", DRUM | {"settle": "1e-5", "turns": "1e-4"}),
+        ("in.drop", 20, "carrier_diameter", DROP | {"settle": "1e-5", "rest": "1e-5", "splash": "1e-5"}),
+        ("in.sieve", 20, "fine", SIEVE | {"settle": "1e-5", "splash": "1e-5"}),
+        ("in.pour", 20, "carrier_diameter", POUR | {"time": "1e-5"}),
+    ],
+)
+def test_the_time_step_follows_the_contact_time(tmp_path, deck, steps, finest, short):
+    def timestep(**variables: str) -> float:
+        return number(r"Time step +: (\S+)", output(deck, tmp_path, **short | variables))
+
+    diameter = 1.0e-3 if finest == "fine" else 1.5e-3
+    step = hertz_contact_time(diameter, 1000) / steps
+    assert timestep() == pytest.approx(step, rel=0.02)  # two digits
+    assert timestep(contact_steps="40") == pytest.approx(step * steps / 40, rel=0.05)
+    changed = {finest: f"{1.1 * diameter}", "stiffen": "100"}
+    assert timestep(**changed) == pytest.approx(hertz_contact_time(1.1 * diameter, 100) / steps, rel=0.05)
+    assert timestep(timestep="1.23e-6") == 1.23e-6
+
+
 @pytest.mark.parametrize(
     ("deck", "variable", "value"),
     [
@@ -190,6 +219,7 @@ def test_three_sieve_fractions_in_one_fix(tmp_path):
         ("in.pour", "speed", "-1"),
         ("in.pour", "slope", "70"),
         ("in.pour", "stiffen", "0"),
+        *((deck, "contact_steps", "9") for deck in ("in.drum", "in.drop", "in.sieve", "in.pour", "in.chute")),
     ],
 )
 def test_wrong_values_are_named_in_one_line(tmp_path, deck, variable, value):

@@ -76,22 +76,27 @@ int differences(const std::string &set_up, const std::vector<std::string> &runs)
   return different;
 }
 
+// what restart files do not keep
+std::string with_forces(const std::string &pairs, const std::string &more)
+{
+  return "timestep 1e-6\nneighbor 2e-4 bin\ncomm_modify vel yes\n" + pairs +
+         "\nfix move all nve/sphere\nfix floor all wall/gran granular hertz/material 2.1e8 0.7 0.3 tangential mindlin "
+         "NULL 0.0 0.3 damping coeff_restitution/limited zplane 0.0 8.4e-3\nthermo 1\n" +
+         more;
+}
+
 // 216 spheres of three types and many sizes, overlapping from the start, that fly and spin in all directions
 std::string shaken_box(const std::string &pairs, const std::string &more = "", const std::string &newton = "off")
 {
   return "units si\natom_style sphere\nboundary p p f\nnewton " + newton +
-         "\ncomm_modify vel yes\nregion box block 0 8.4e-3 0 8.4e-3 0 8.4e-3\ncreate_box 3 box\n"
+         "\nregion box block 0 8.4e-3 0 8.4e-3 0 8.4e-3\ncreate_box 3 box\n"
          "lattice sc 1.4e-3 origin 0.5 0.5 0.5\ncreate_atoms 1 box\nset type 1 type/fraction 2 0.4 17\n"
          "set type 2 type/fraction 3 0.3 18\nvariable size atom random(1.2e-3,1.5e-3,5)\nset group all diameter "
          "v_size\n"
          "set group all density 7700\nvariable a atom random(-1,1,6)\nvariable b atom random(-1,1,7)\n"
          "variable c atom random(-1,1,8)\nvelocity all set v_a v_b v_c\nvariable d atom 500*random(-1,1,9)\n"
-         "set group all omega v_d v_d v_d\ntimestep 1e-6\nneighbor 2e-4 bin\n" +
-         pairs +
-         "\nfix move all nve/sphere\nfix floor all wall/gran granular hertz/material 2.1e8 0.7 0.3 tangential mindlin "
-         "NULL "
-         "0.0 0.3 damping coeff_restitution/limited zplane 0.0 8.4e-3\nthermo 1\n" +
-         more;
+         "set group all omega v_d v_d v_d\n" +
+         with_forces(pairs, more);
 }
 
 std::string steel(const std::string &modulus = "2.1e8", const std::string &shear_damping = "0.0",
@@ -220,6 +225,56 @@ TEST(PairGranularFused, AtomsThatAreMovedAndGrow)
   growing.replace(growing.find("sphere"), 6, "sphere 1");
   EXPECT_EQ(differences(growing, {"run 100", "run 100"}), 0);
   EXPECT_EQ(differences(shaken_box(both, "neighbor 0.0 bin"), RUNS), 0);    // each step is a list of its own
+// LAMMPS gives contacts room for their history once
+TEST(PairGranularFused, HistoryOfAnotherLength)
+{
+  Deck deck;
+  deck(shaken_box(GRANULAR + steel()));
+  deck("run 10");
+  const std::string adhesive = "pair_coeff * *" + sticky();
+  EXPECT_NE(deck.attempt("pair_style granular\n" + adhesive + "\nrun 0").find("keeps 3 values"), std::string::npos);
+  deck("pair_style none\npair_style granular\n" + adhesive + "\nrun 10");
+  deck("pair_coeff 1 1" + steel() + "\nrun 10");
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel()),
+                        {"run 100", "pair_style none\n" + GRANULAR + sticky() + "\nrun 100", "run 100"}),
+            0);
+}
+
+// written by one, read by the other: contacts of pairs and of walls go on as they were
+TEST(PairGranularFused, RestartFilesBothWays)
+{
+  const std::string file = "pair_granular.restart",
+                    pairs = GRANULAR + steel("2.1e8", "0.2") + "\npair_coeff 2 *" + sticky();
+  const std::string walls =
+      "region wall cylinder z 4.2e-3 4.2e-3 4e-3 INF INF units box\nfix wall all wall/gran/region "
+      "granular" +
+      sticky() + "region wall\nunfix floor\nfix floor all wall/gran granular" + sticky() + "zplane 0.0 8.4e-3";
+  std::vector<State> ends;
+  for (const bool ours_writes : {false, true})
+    for (const bool ours_reads : {false, true}) {
+      Deck before, after;
+      if (!ours_writes) use_lammps_own(static_cast<LAMMPS *>(before.lmp));
+      if (!ours_reads) use_lammps_own(static_cast<LAMMPS *>(after.lmp));
+      before(shaken_box(pairs, walls));
+      before("run 300\nwrite_restart " + file);
+      after("read_restart " + file + "\n" + with_forces(pairs, walls));
+      after("run 0");
+      const State start = state_of(after);
+      after("run 200");
+      ends.push_back(start);
+      for (const std::uint64_t bits : state_of(after)) ends.back().push_back(bits);
+      EXPECT_EQ(ends.back(), ends.front()) << ours_writes << ours_reads;
+    }
+  // that they have a past: without it they would go on otherwise
+  Deck before, after;
+  before(shaken_box(pairs, walls));
+  before("run 300\nwrite_data " + file + " nocoeff");
+  after("units si\natom_style sphere\nboundary p p f\nnewton off\nread_data " + file + "\n" +
+        with_forces(pairs, walls));
+  after("run 0");
+  const State forgetful = state_of(after);
+  EXPECT_FALSE(std::equal(forgetful.begin(), forgetful.end(), ends.front().begin()));
+  std::remove(file.c_str());
 }
 
 // near enough to be looked at again, out of reach, on the other side, from one wall to the other
@@ -248,30 +303,53 @@ TEST(FixWallGranNear, Planes)
   EXPECT_EQ(differences(shaken_box(pair), {"run 100", "displace_atoms all move 0 0 -5e-5\nrun 50 pre no"}), 0);
 }
 
+namespace {
+
+// a wall of a region, and variables that move one
+std::string walled(const std::string &region, const std::string &law)
+{
+  return shaken_box(GRANULAR + steel(), "variable way equal 1e-4*sin(5e3*time)\nvariable turn equal 300*time\n"
+                                        "variable lowest equal 0.5*bound(all,zmin)\n"
+                                        "variable shaken equal 1e-6*random(-1,1,8)\nregion wall " +
+                                            region + "\nfix wall all wall/gran/region granular" + law + "region wall");
+}
+
+}    // namespace
+
 TEST(FixWallGranNear, Regions)
 {
-  const auto wall = [](const std::string &region, const std::string &law) {
-    return shaken_box(GRANULAR + steel(), "variable way equal 1e-4*sin(5e3*time)\nvariable turn equal 300*time\n"
-                                          "region wall " +
-                                              region + "\nfix wall all wall/gran/region granular" + law +
-                                              "region wall");
-  };
   for (const std::string &law : {steel(), sticky()}) {
-    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("block 3e-3 5e-3 3e-3 5e-3 3e-3 5e-3 side out units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("cylinder z 4.2e-3 4.2e-3 4e-3 INF INF units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("sphere 4.2e-3 4.2e-3 4.2e-3 4e-3 units box", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("block 1e-3 7e-3 1e-3 7e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("block 3e-3 5e-3 3e-3 5e-3 3e-3 5e-3 side out units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("cylinder z 4.2e-3 4.2e-3 4e-3 INF INF units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("sphere 4.2e-3 4.2e-3 4.2e-3 4e-3 units box", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("plane 0 0 2e-3 0.1 0.2 0.9 units box", law), RUNS), 0);
     // moving, turning about an axis of their own and another one
-    EXPECT_EQ(differences(wall("plane 0 0 2e-3 0.1 0.2 0.9 units box move v_way NULL v_way", law), RUNS), 0);
-    EXPECT_EQ(differences(wall("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0",
-                               law),
+    EXPECT_EQ(differences(walled("plane 0 0 2e-3 0.1 0.2 0.9 units box move v_way NULL v_way", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("cylinder y 4.2e-3 4.2e-3 4e-3 INF INF units box rotate v_turn 4.2e-3 0 4.2e-3 0 1 0",
+                                 law),
                           RUNS),
               0);
-    EXPECT_EQ(differences(wall("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law),
+    EXPECT_EQ(differences(walled("block 1e-3 7e-3 1e-3 7e-3 INF INF units box rotate v_turn 4e-3 3e-3 0 0 0 1", law),
                           RUNS),
               0);
     // what is left to LAMMPS
-    EXPECT_EQ(differences(wall("cone z 4.2e-3 4.2e-3 2e-3 4e-3 1e-3 8e-3 units box open 2", law), RUNS), 0);
+    EXPECT_EQ(differences(walled("cone z 4.2e-3 4.2e-3 2e-3 4e-3 1e-3 8e-3 units box open 2", law), RUNS), 0);
   }
+}
+
+// LAMMPS asks a variable for the motion once a step, with all atoms in their groups
+TEST(FixWallGranNear, RegionsThatFollowAtomsOrChance)
+{
+  for (const std::string way : {"v_lowest", "v_shaken"}) {
+    EXPECT_EQ(differences(walled("plane 0 0 2e-3 0.1 0.2 0.9 units box move NULL NULL " + way, steel()), RUNS), 0);
+    EXPECT_EQ(differences(walled("block INF INF INF INF 0 8e-3 units box move NULL NULL " + way, sticky()), RUNS), 0);
+  }
+}
+
+// atoms whose centers are at the surface when they are looked at, and soon within or beyond it
+TEST(FixWallGranNear, CentersOnTheSurfaceOfARegion)
+{
+  EXPECT_EQ(differences(walled("cylinder z 4.2e-3 4.2e-3 4.94975e-3 INF INF units box", steel()), RUNS), 0);
+  EXPECT_EQ(differences(walled("sphere 4.2e-3 4.2e-3 4.2e-3 6.06218e-3 units box", steel()), RUNS), 0);
 }
