@@ -225,6 +225,8 @@ TEST(PairGranularFused, AtomsThatAreMovedAndGrow)
   growing.replace(growing.find("sphere"), 6, "sphere 1");
   EXPECT_EQ(differences(growing, {"run 100", "run 100"}), 0);
   EXPECT_EQ(differences(shaken_box(both, "neighbor 0.0 bin"), RUNS), 0);    // each step is a list of its own
+}
+
 // LAMMPS gives contacts room for their history once
 TEST(PairGranularFused, HistoryOfAnotherLength)
 {
