@@ -102,6 +102,7 @@ void FixWallGranNear::find_near()
 
 void FixWallGranNear::add_contacts()
 {
+  constexpr std::size_t FEW = 4;    // below, batches would be mostly empty
   ContactLaw *law = laws.data();
   const Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
   queue->clear();    // an error may have left some
@@ -113,7 +114,7 @@ void FixWallGranNear::add_contacts()
       continue;
     }
     if (model->beyond_contact) history_one[i][0] = 1.0;
-    if (law->kind == ContactLaw::MODEL)
+    if (law->kind == ContactLaw::MODEL || near.size() < FEW)
       compute_model(i, distance);
     else
       queue->add(law, history_one[i], i, i);

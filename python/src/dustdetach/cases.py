@@ -74,6 +74,8 @@ def with_methods(cases: list[Impact], method: str | None) -> list[Impact]:
 
 def _by(method: str, case: Impact) -> Impact:
     law = Impact.tangential if method == "resolved" else case.tangential
+    if (method, law) == (case.method, case.tangential):
+        return case
     return replace(case, method=method, tangential=law)
 
 

@@ -65,7 +65,7 @@ def materials() -> list[Material]:
 
 def is_known(name: str) -> bool:
     """Whether there is a material of this name."""
-    return name.lower() in {**_library(), **_own}
+    return name.lower() in _own or name.lower() in _library()
 
 
 def find_material(name: str, part: str) -> Material:
@@ -78,9 +78,9 @@ def find_material(name: str, part: str) -> Material:
     Raises:
         InvalidInput: there is none of this name.
     """
-    known = {**_library(), **_own}
-    material = known.get(name.lower())
+    material = _own.get(name.lower()) or _library().get(name.lower())
     if material is None:
+        known = {**_library(), **_own}
         near = difflib.get_close_matches(name.lower(), known, 1)
         meant = f" (did you mean {known[near[0]].name}?)" if near else ""
         allowed = ", ".join(each.name for each in materials())
