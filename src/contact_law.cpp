@@ -91,8 +91,7 @@ ContactLaw::ContactLaw(GranularModel *_model, int number) :
     kind(kind_of(_model)), model(_model), normal(dynamic_cast<GranSubModNormalJKRVdW *>(_model->normal_model)),
     stiffness(0.0), damping(0.0), shear_stiffness(0.0), shear_damping(0.0), friction(0.0), theta_crit(0.0),
     synchronized(synchronizes(_model, 0) && _model->contact_type != WALL), shear_place(0), neck_place(0),
-    stamp(std::int64_t(number) << 40), effective_radius(0.0), adhesion(), wall(_model->contact_type == WALL),
-    last_i(-1.0), last_j(-1.0), reach(0.0), largest_radius(0.0), largest_reach(0.0)
+    stamp(std::int64_t(number) << 40), wall(_model->contact_type == WALL), largest_radius(0.0), largest_reach(0.0)
 {
   if (kind == MODEL) return;
   damping = Damping::coefficient(model->damping_model);
@@ -116,15 +115,10 @@ bool ContactLaw::heats() const { return model->heat_model->name != "none"; }
 
 void ContactLaw::find_adhesion(double radius_i, double radius_j)
 {
-  stamp++;
-  last_i = radius_i;
-  last_j = radius_j;
-  const double radii = radius_i + radius_j;
-  effective_radius = wall ? radius_i : radius_i * radius_j / radii;
-  adhesion = normal->adhesion(effective_radius);
-  if (effective_radius > largest_radius) {
-    largest_radius = effective_radius;
-    largest_reach = adhesion.reach;
-  }
-  reach = radii + adhesion.reach;
+  const double radii = radius_i + radius_j, R = wall ? radius_i : radius_i * radius_j / radii;
+  const auto by_radius = normal->adhesion(R);
+  recall({radius_i, radius_j, R, radii + by_radius.reach, by_radius});
+  if (R <= largest_radius) return;
+  largest_radius = R;
+  largest_reach = by_radius.reach;
 }

@@ -36,9 +36,21 @@ class ContactLaw {
   bool synchronized;
   int shear_place, neck_place;    // in a contact's history
   std::int64_t stamp;             // another one whenever any of these numbers has changed
-  // of grains, for the radii asked for last
-  double effective_radius;
-  Granular_NS::GranSubModNormalJKRVdW::Adhesion adhesion;
+
+  // of two grains
+  struct Adhesion {
+    double radius_i = -1.0, radius_j = -1.0;
+    double effective_radius = 0.0, reach = 0.0;    // up to which the centres attract each other
+    Granular_NS::GranSubModNormalJKRVdW::Adhesion by_radius = {};
+    bool is_of(double ri, double rj) const { return radius_i == ri && radius_j == rj; }
+  };
+  Adhesion adhesion;    // of those asked for last
+  // as it was found before: cube roots are saved
+  void recall(const Adhesion &found)
+  {
+    stamp++;
+    adhesion = found;
+  }
 
   bool heats() const;
 
@@ -55,17 +67,17 @@ class ContactLaw {
   }
 
  private:
-  bool wall;    // flat: of radius 0
-  double last_i, last_j, reach;
+  bool wall;                               // flat: of radius 0
   double largest_radius, largest_reach;    // of all effective radii so far: the larger, the farther
 
   bool grain_touches(double rsq, double radius_i, double radius_j, double margin)
   {
-    if (radius_i != last_i || radius_j != last_j) {
+    if (!adhesion.is_of(radius_i, radius_j)) {
       if (far(rsq, radius_i, radius_j, margin)) return false;
       find_adhesion(radius_i, radius_j);
     }
-    return rsq < (reach + margin) * (reach + margin);
+    const double reach = adhesion.reach + margin;
+    return rsq < reach * reach;
   }
 
   // beyond the reach of the largest ones

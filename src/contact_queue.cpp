@@ -41,14 +41,15 @@ void ContactQueue::set_coefficients(const ContactLaw &law, ContactBatch &batch, 
     hertz.stiffness[k] = law.stiffness;
     return;
   }
-  grains.effective_radius[k] = law.effective_radius;
+  const auto &adhesion = law.adhesion.by_radius;
+  grains.effective_radius[k] = law.adhesion.effective_radius;
   grains.theta_crit[k] = law.theta_crit;
-  grains.hamaker[k] = law.adhesion.hamaker;
-  grains.z0[k] = law.adhesion.z0;
-  grains.range[k] = law.adhesion.range;
-  grains.pull_off_force[k] = law.adhesion.pull_off_force;
-  grains.equilibrium_radius[k] = law.adhesion.equilibrium_radius;
-  grains.breaking_gap[k] = law.adhesion.breaking_gap;
+  grains.hamaker[k] = adhesion.hamaker;
+  grains.z0[k] = adhesion.z0;
+  grains.range[k] = adhesion.range;
+  grains.pull_off_force[k] = adhesion.pull_off_force;
+  grains.equilibrium_radius[k] = adhesion.equilibrium_radius;
+  grains.breaking_gap[k] = adhesion.breaking_gap;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -71,8 +71,9 @@ class ContactQueue {
   void compute(double dt, bool move, bigint step);
 
  private:
-  Dust::HertzBatch hertz;
-  Dust::GrainBatch grains;
+  // all lanes of a block are computed: those that no contact has had yet are 0
+  Dust::HertzBatch hertz = {};
+  Dust::GrainBatch grains = {};
   Dust::ContactBatch computed;
   Contact contacts[Dust::ContactBatch::COUNT];
   int count;

@@ -135,7 +135,7 @@ void FixWallGranRegionNear::look_at(int i, const Vector &place, double margin)
   const double *x = atom->x[i], radius = atom->radius[i], off = BESIDE * margin;
   const double reach = radius + model->pulloff_distance(radius, 0.0) + margin + 2.0 * off;
   near[i] = !region->match(x[0], x[1], x[2]) || region->surface(x[0], x[1], x[2], reach) > 0 ||
-      region->surface(x[0] + off, x[1] + off, x[2] + off, reach) > 0;
+            region->surface(x[0] + off, x[1] + off, x[2] + off, reach) > 0;
   radii[i] = radius;
   places[0][i] = place.x;
   places[1][i] = place.y;

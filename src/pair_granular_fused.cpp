@@ -26,8 +26,8 @@ using Dust::Vector;
 /* ---------------------------------------------------------------------- */
 
 PairGranularFused::PairGranularFused(LAMMPS *_lmp) :
-    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), size_kept(0), margin(0.1),
-    found_at(0), close_known(false)
+    PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), size_kept(0),
+    margin(0.1), found_at(0), close_known(false)
 {
 }
 
@@ -47,11 +47,6 @@ void PairGranularFused::init_style()
   const bool first = !fix_history;
   PairGranular::init_style();
   if (first) size_kept = size_history;
-  if (size_history != size_kept)    // LAMMPS would write beyond it, or take one contact's for another's
-    error->all(FLERR,
-               "Pair granular keeps {} values of each contact since its first run, and now has models with {}: give "
-               "their pair_coeff before it, or pair_style none before pair_style granular",
-               size_kept, size_history);
 }
 
 void PairGranularFused::reset_dt()
@@ -64,6 +59,12 @@ void PairGranularFused::reset_dt()
 
 void PairGranularFused::read_laws()
 {
+  // LAMMPS would write beyond it, or take one contact's for another's; said here, when no list is asked for any more
+  if (size_history != size_kept)
+    error->all(FLERR,
+               "Pair granular keeps {} values of each contact since its first run, and now has models with {}: give "
+               "their pair_coeff before it, or pair_style none before pair_style granular",
+               size_kept, size_history);
   laws.clear();
   for (int m = 0; m < nmodels; m++) laws.emplace_back(models_list[m], m + 1);
   none_fused = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::MODEL; });
@@ -156,6 +157,7 @@ void PairGranularFused::find_close()
         close.push_back({history, i, j, touch[jj]});
     }
   }
+  adhesions.assign(hertz_alone ? 0 : close.size(), {});
   then.note(x, radius, atom->nlocal + atom->nghost);
   close_known = true;
 }
@@ -184,13 +186,30 @@ template <bool HERTZ_ALONE> void PairGranularFused::gather()
       touches = compute_model(pair, law);
     } else {
       const Vector dx = at(x, i) - at(x, j);
-      touches = law->touches(dot(dx, dx), radius[i], radius[j]);
+      const double rsq = dot(dx, dx), radius_i = radius[i], radius_j = radius[j];
+      const bool of_last = HERTZ_ALONE || law->kind == ContactLaw::HERTZ || law->adhesion.is_of(radius_i, radius_j);
+      touches = of_last ? law->touches(rsq, radius_i, radius_j) : grains_touch(law, pair, rsq, radius_i, radius_j);
       if (touches) queue->add(law, pair.history, i, j);
     }
     if (touches != bool(pair.touches)) change(pair, touches);
     if (queue->full()) compute_waiting();
   }
   compute_waiting();
+}
+
+/* ----------------------------------------------------------------------
+   grains of other sizes than the last ones: what they have of each other is found once for a close pair
+------------------------------------------------------------------------- */
+
+bool PairGranularFused::grains_touch(ContactLaw *law, const ClosePair &pair, double rsq, double radius_i,
+                                     double radius_j)
+{
+  ContactLaw::Adhesion &found = adhesions[&pair - close.data()];
+  const bool known = found.is_of(radius_i, radius_j);
+  if (known) law->recall(found);
+  const bool touches = law->touches(rsq, radius_i, radius_j);
+  if (touches && !known) found = law->adhesion;
+  return touches;
 }
 
 /* ----------------------------------------------------------------------
@@ -270,6 +289,7 @@ void PairGranularFused::compute_waiting()
 
 double PairGranularFused::memory_usage()
 {
-  return PairGranular::memory_usage() + double(close.capacity() * sizeof(ClosePair)) + then.memory_usage() +
+  return PairGranular::memory_usage() + double(close.capacity() * sizeof(ClosePair)) +
+         double(adhesions.capacity() * sizeof(ContactLaw::Adhesion)) + then.memory_usage() +
          (queue ? double(sizeof(ContactQueue)) : 0.0);
 }

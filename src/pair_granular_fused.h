@@ -11,6 +11,7 @@ PairStyle(granular,PairGranularFused);
 #ifndef LMP_PAIR_GRANULAR_FUSED_H
 #define LMP_PAIR_GRANULAR_FUSED_H
 
+#include "contact_law.h"
 #include "core/whereabouts.h"
 
 #include "pair_granular.h"
@@ -36,8 +37,8 @@ class PairGranularFused : public PairGranular {
   double memory_usage() override;
 
  private:
-  std::vector<class ContactLaw> laws;        // one for each of models_list
-  std::vector<class ContactLaw *> law_of;    // of two types
+  std::vector<ContactLaw> laws;        // one for each of models_list
+  std::vector<ContactLaw *> law_of;    // of two types
   bool laws_known, none_fused, hertz_alone, heats;
   int size_kept;    // of a contact's history, since there is one
   void read_laws();
@@ -49,7 +50,8 @@ class PairGranularFused : public PairGranular {
     int i, j, touches;
   };
   std::vector<ClosePair> close;
-  Dust::Whereabouts then;    // when they were found
+  std::vector<ContactLaw::Adhesion> adhesions;    // of those of grains
+  Dust::Whereabouts then;                         // when they were found
   double margin;
   bigint found_at;
   bool close_known;
@@ -60,7 +62,8 @@ class PairGranularFused : public PairGranular {
 
   std::unique_ptr<class ContactQueue> queue;
   template <bool> void gather();
-  bool compute_model(const ClosePair &, class ContactLaw *);
+  bool grains_touch(ContactLaw *, const ClosePair &, double, double, double);
+  bool compute_model(const ClosePair &, ContactLaw *);
   void compute_waiting();
   double effective_mass(int, int) const;
 };
