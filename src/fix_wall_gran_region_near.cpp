@@ -157,8 +157,8 @@ bool FixWallGranRegionNear::may_touch(const Vector &place, double radius) const
 }
 
 /* ----------------------------------------------------------------------
-   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom that does not
-   touch it forgets its contacts.
+   Between two looks an atom moves by less than the margin, as the region sees it. When LAMMPS sees an atom without
+   contact, it forgets those that the atom had.
 ------------------------------------------------------------------------- */
 
 void FixWallGranRegionNear::find_near()
