@@ -91,7 +91,7 @@ def test_commands_and_files_repeat_an_impact(command, tmp_path, changes):
 
 def test_warnings(swept, tmp_path):
     rows = read_csv(swept[0] / "results.csv")
-    bad = replace(rows[0], end="step limit", restitution_realised=0.5, lammps_version=20250204, timestep=6e-8, bare=0.1)
+    bad = replace(rows[0], end="step limit", restitution_realised=0.5, lammps_version=20240829, timestep=6e-8, bare=0.1)
     write_csv(tmp_path / "results.csv", [bad, *rows[1:]])
     text = html.unescape(write_report(tmp_path).read_text())
     for words in (

@@ -1,5 +1,5 @@
-// Contacts followed over some steps by LAMMPS' granular model and by the loops of src/core, without a LAMMPS around them:
-// prints how many forces, torques and histories have other bits. For processors that there is only an emulator of.
+// Contacts followed over some steps by LAMMPS' granular model and by the loops of src/core, without a LAMMPS around
+// them: prints how many have other forces, torques or histories. For processors that there is only an emulator of.
 
 #include "contact_law.h"
 #include "core/grain_contacts.h"

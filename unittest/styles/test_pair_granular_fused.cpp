@@ -9,6 +9,7 @@
 #include "modify.h"
 #include "pair_granular.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <typeinfo>
