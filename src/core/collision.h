@@ -40,6 +40,8 @@ struct Detachment {
 
 /*! What is kept of a collision from when inertia could make a grain slide; what each step needs comes first */
 struct alignas(64) Strong {
+  AccelerationHistory history;
+  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
   struct Moment {
     double time;
     double impulse[3], spin[3];    // as of Collision
@@ -49,8 +51,6 @@ struct alignas(64) Strong {
     Moment lively;           // at the last lively step
     double count[NMODES];    // of the grains that have left, those that had met SLIDING and ROLLING
   } state;
-  AccelerationHistory history;
-  std::vector<uint64_t> start;    // attached at begin(), kept from when the first grain could leave
   LiftOffSchedule schedule;
 };
 
@@ -109,7 +109,7 @@ class alignas(64) Collision {
     if (go == Fetch::FIRST)
       for (int line : {0, 1}) __builtin_prefetch(own + LINE * line, WRITE);
     else if (part && go == Fetch::SECOND)
-      for (int line : {0, 1, 2, 3}) __builtin_prefetch(part + LINE * line, WRITE);
+      for (int line : {0, 1, 2}) __builtin_prefetch(part + LINE * line, WRITE);
     else if (part)
       strong->history.fetch();
     else if (go == Fetch::SECOND)

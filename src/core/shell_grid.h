@@ -24,6 +24,14 @@ inline double chord2(const double *a, const double *b)
 /*! Neighbours are closer than an angle (rad) to a point: what a search needs of it */
 struct Neighbourhood {
   Neighbourhood(double angle) : cosine(std::cos(std::min(angle, PI))), sine(std::sin(std::min(angle, PI))) {}
+  //! the same by the square of the chord, at most 4, that goes with the angle
+  static Neighbourhood within(double chord2)
+  {
+    Neighbourhood near(0.0);
+    near.cosine = 1.0 - 0.5 * chord2;
+    near.sine = std::sqrt(chord2 * (1.0 - 0.25 * chord2));
+    return near;
+  }
   double cosine, sine;
 };
 

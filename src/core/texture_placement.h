@@ -36,7 +36,7 @@ double grains_for_coverage(double coverage, double carrier_radius, double grain_
  *
  * The free part is tracked by cells of the sphere that no grain covers entirely, refined as they fill, so that dense
  * monolayers need no more than a few tries a grain and a full one is recognised as full (the idea of Wang, Int. J. Mod.
- * Phys. C 5, 707 (1994), with cells of equal area on a sphere).
+ * Phys. C 5, 707 (1994), with cells of equal area on a sphere; sequential_placement.h).
  *
  * \param coverage  X0, positive; the bare cap counts as surface
  * \param seed      the same seed gives the same texture, to the round-off of the C library's functions
