@@ -99,12 +99,13 @@ void PairGranularFused::init_style()
   laws_known = false;
   const bool first = !fix_history;
   PairGranular::init_style();
-  if (first) size_kept = size_history;
-  if (size_history != size_kept)    // LAMMPS would write beyond it, or take one contact's for another's
+  const int size = get_size_history();
+  if (first) size_kept = size;
+  if (size != size_kept)    // LAMMPS would write beyond it, or take one contact's for another's
     error->all(FLERR,
                "Pair granular keeps {} values of each contact since its first run, and now has models with {}: give "
                "their pair_coeff before it, or pair_style none before pair_style granular",
-               size_kept, size_history);
+               size_kept, size);
 }
 
 void PairGranularFused::reset_dt()
