@@ -228,6 +228,23 @@ TEST(PairGranularFused, AtomsThatAreMovedAndGrow)
   EXPECT_EQ(differences(shaken_box(both, "neighbor 0.0 bin"), RUNS), 0);    // each step is a list of its own
 }
 
+// what was found of pairs and of walls is kept from run to run: types, the skin and who has computed last may change
+TEST(PairGranularFused, WhatChangesWithoutANewList)
+{
+  const std::string far = " jkr/vdw/cut 1e7 2e5 0.3 1e-13 1e-7 6e-5 tangential mindlin NULL 0.0 0.3 damping "
+                          "viscoelastic rolling dominik/tielens 0.05 ";
+  const std::string grains = GRANULAR + sticky() + "\npair_coeff 2 *" + sticky("0.4") + "\npair_coeff 3 3" + far;
+  const std::string types = "variable other atom 1+(id+step)%3\nfix types all set 25 0 group all type v_other";
+  EXPECT_EQ(differences(shaken_box(grains, types), {"run 10", "run 200", "run 50 pre no"}), 0);
+  const std::string still = "velocity all scale 1e-9\nfix hold all setforce 0 0 0\nneighbor 1e-6 bin\n"
+                            "neigh_modify every 1000 delay 1000 check no\n";
+  const std::string fly = "velocity all set 0.0 0.0 v_c\nneighbor 2e-3 bin\nrun 100 pre no";
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel()), {"velocity all scale 1e-6\n" + still + "run 2", fly}), 0);
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel()), {"run 100", "special_bonds lj 0.5 0.5 0.5\nrun 100 pre no",
+                                                         "special_bonds lj 1 1 1\nrun 150 pre no", "run 100"}),
+            0);
+}
+
 // LAMMPS gives contacts room for their history once
 TEST(PairGranularFused, HistoryOfAnotherLength)
 {
