@@ -71,8 +71,7 @@ void FixWallGranNear::post_force(int vflag)
   FixWallGran::post_force(vflag);
   atom->nlocal = nlocal;
   if (nlocal == 0) return;
-  if (!near_known || neighbor->ago == 0 || then.left(atom->x[0], atom->radius, nlocal, margin))
-    find_near();
+  if (!near_known || neighbor->ago == 0 || then.left(atom->x[0], atom->radius, nlocal, margin)) find_near();
   add_contacts();
 }
 
