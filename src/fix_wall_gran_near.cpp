@@ -25,7 +25,7 @@ static constexpr double MARGIN = 0.5;    // of the skin of the neighbor list, to
 /* ---------------------------------------------------------------------- */
 
 FixWallGranNear::FixWallGranNear(LAMMPS *_lmp, int narg, char **arg) :
-    FixWallGran(_lmp, narg, arg), left_to_parent(true), near_known(false)
+    FixWallGran(_lmp, narg, arg), left_to_parent(true), margin(0.0), near_known(false)
 {
 }
 
@@ -71,28 +71,29 @@ void FixWallGranNear::post_force(int vflag)
   FixWallGran::post_force(vflag);
   atom->nlocal = nlocal;
   if (nlocal == 0) return;
-  if (!near_known || neighbor->ago == 0 || then.left(atom->x[0], atom->radius, nlocal, MARGIN * neighbor->skin))
-    find_near();
+  if (!near_known || neighbor->ago == 0 || then.left(atom->x[0], atom->radius, nlocal, margin)) find_near();
   add_contacts();
 }
 
 /* ----------------------------------------------------------------------
-   an atom that is far has no history any more
+   An atom that is far has no history any more. One that has left the group keeps what it had, as long as it stays out.
 ------------------------------------------------------------------------- */
 
 void FixWallGranNear::find_near()
 {
   constexpr double SLACK = 1.0e-6;    // more than rounding may add
   const Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
-  const double margin = MARGIN * (1.0 + SLACK) * neighbor->skin;
+  margin = MARGIN * neighbor->skin;
+  const double reach = (1.0 + SLACK) * margin;
   const int nlocal = atom->nlocal;
   near.clear();
   for (int i = 0; i < nlocal; i++) {
-    const double distance = planes.distance(atom->x[i][wallstyle]);
-    if (laws.front().touches(distance * distance, atom->radius[i], 0.0, margin))
-      near.push_back(i);
-    else if (atom->mask[i] & groupbit)
+    const double distance = planes.distance(atom->x[i][wallstyle]), *history = history_one[i];
+    const bool is_near = laws.front().touches(distance * distance, atom->radius[i], 0.0, reach);
+    if (!is_near && atom->mask[i] & groupbit)
       std::fill_n(history_one[i], size_history, 0.0);
+    else if (is_near || std::any_of(history, history + size_history, [](double kept) { return kept != 0.0; }))
+      near.push_back(i);
   }
   then.note(atom->x[0], atom->radius, nlocal);
   near_known = true;

@@ -39,8 +39,9 @@ class FixWallGranNear : public FixWallGran {
   std::vector<class ContactLaw> laws;    // the one
   void read_law();
 
-  std::vector<int> near;     // atoms that touch the wall or may soon
+  std::vector<int> near;     // atoms that touch the wall or may soon, or have a history
   Dust::Whereabouts then;    // when they were found
+  double margin;             // up to which they are near
   bool near_known;
   void find_near();
 

@@ -27,7 +27,7 @@ using Dust::Vector;
 
 PairGranularFused::PairGranularFused(LAMMPS *_lmp) :
     PairGranular(_lmp), laws_known(false), none_fused(true), hertz_alone(false), heats(false), size_kept(0),
-    margin(0.1), found_at(0), close_known(false)
+    margin(0.1), gap(0.0), found_at(0), close_known(false)
 {
 }
 
@@ -99,6 +99,7 @@ void PairGranularFused::compute(int eflag, int vflag)
   if (!laws_known) read_laws();
   if (left_to_parent()) {
     PairGranular::compute(eflag, vflag);
+    close_known = false;    // LAMMPS has changed which of them touch
     return;
   }
   ev_init(eflag, vflag);
@@ -109,14 +110,16 @@ void PairGranularFused::compute(int eflag, int vflag)
   hertz_alone ? gather<true>() : gather<false>();
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   another type has another law, with another reach and another adhesion
+------------------------------------------------------------------------- */
 
 bool PairGranularFused::still_close() const
 {
   constexpr double HALF = 0.5 * (1.0 - 1.0e-6);    // of two atoms; less what rounding may add
   const int nall = atom->nlocal + atom->nghost;
-  return close_known && neighbor->ago != 0 &&
-         !then.left(atom->x[0], atom->radius, nall, HALF * margin * neighbor->skin);
+  return close_known && neighbor->ago != 0 && !then.left(atom->x[0], atom->radius, nall, HALF * gap) &&
+         std::equal(types_then.begin(), types_then.end(), atom->type);
 }
 
 /* ----------------------------------------------------------------------
@@ -143,7 +146,7 @@ void PairGranularFused::find_close()
   const double *x = atom->x[0], *radius = atom->radius, *special = force->special_lj;
   const int *type = atom->type, ntypes = atom->ntypes, size = get_size_history();
   adapt_margin();
-  const double gap = margin * neighbor->skin;
+  gap = margin * neighbor->skin;
   close.clear();
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i], *touch = fix_history->firstflag[i];
@@ -158,7 +161,9 @@ void PairGranularFused::find_close()
     }
   }
   adhesions.assign(hertz_alone ? 0 : close.size(), {});
-  then.note(x, radius, atom->nlocal + atom->nghost);
+  const int nall = atom->nlocal + atom->nghost;
+  then.note(x, radius, nall);
+  types_then.assign(type, type + nall);
   close_known = true;
 }
 
@@ -291,5 +296,5 @@ double PairGranularFused::memory_usage()
 {
   return PairGranular::memory_usage() + double(close.capacity() * sizeof(ClosePair)) +
          double(adhesions.capacity() * sizeof(ContactLaw::Adhesion)) + then.memory_usage() +
-         (queue ? double(sizeof(ContactQueue)) : 0.0);
+         double(types_then.capacity() * sizeof(int)) + (queue ? double(sizeof(ContactQueue)) : 0.0);
 }

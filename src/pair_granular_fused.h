@@ -52,7 +52,8 @@ class PairGranularFused : public PairGranular {
   std::vector<ClosePair> close;
   std::vector<ContactLaw::Adhesion> adhesions;    // of those of grains
   Dust::Whereabouts then;                         // when they were found
-  double margin;
+  std::vector<int> types_then;
+  double margin, gap;    // up to which surfaces are close: in skins, as it adapts, and a length, when they were found
   bigint found_at;
   bool close_known;
   bool still_close() const;

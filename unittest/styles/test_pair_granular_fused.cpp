@@ -219,13 +219,34 @@ TEST(PairGranularFused, BetweenSteps)
 TEST(PairGranularFused, AtomsThatAreMovedAndGrow)
 {
   const std::string both = GRANULAR + steel() + "\npair_coeff 2 *" + sticky();
-  const std::string away = "group some id 1:60\ndisplace_atoms some move 9e-5 3e-5 -6e-5\n";
+  const std::string away = "group some id 1:60\ndisplace_atoms some move 9e-5 3e-5 -6e-5 units box\n";
   EXPECT_EQ(differences(shaken_box(both), {"run 100", away + "run 50 pre no", away + "run 100"}), 0);
   const std::string grow = "variable grown equal 1.2e-3+1e-6*step\nfix grow all adapt 1 atom diameter v_grown\n";
   std::string growing = shaken_box(both, grow);
   growing.replace(growing.find("sphere"), 6, "sphere 1");
   EXPECT_EQ(differences(growing, {"run 100", "run 100"}), 0);
   EXPECT_EQ(differences(shaken_box(both, "neighbor 0.0 bin"), RUNS), 0);    // each step is a list of its own
+}
+
+// what was found of pairs and of walls is kept from run to run: types, the skin and who has computed last may change
+TEST(PairGranularFused, WhatChangesWithoutANewList)
+{
+  const std::string far = " jkr/vdw/cut 1e7 2e5 0.3 1e-13 1e-7 6e-5 tangential mindlin NULL 0.0 0.3 damping "
+                          "viscoelastic rolling dominik/tielens 0.05 ";
+  const std::string grains = GRANULAR + sticky() + "\npair_coeff 2 *" + sticky("0.4") + "\npair_coeff 3 3" + far;
+  const std::string types = "variable other atom 1+(id+step)%3\nfix types all set 25 0 group all type v_other";
+  EXPECT_EQ(differences(shaken_box(grains, types), {"run 10", "run 200", "run 50 pre no"}), 0);
+  const std::string still = "velocity all scale 1e-9\nfix hold all setforce 0 0 0\nneighbor 1e-6 bin\n"
+                            "neigh_modify every 1000 delay 1000 check no\n";
+  const std::string fly = "velocity all set 0.0 0.0 v_c\nneighbor 2e-3 bin\nrun 100 pre no";
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel()), {"velocity all scale 1e-6\n" + still + "run 2", fly}), 0);
+  // contacts that LAMMPS' own loop has seen end, and that begin again
+  const std::string one_list = "neighbor 2e-3 bin\nneigh_modify every 1000 delay 1000 check no\n"
+                               "group some id 1:216:2\nvariable there atom x+6e-5\nvariable back atom x-6e-5\n";
+  EXPECT_EQ(differences(shaken_box(GRANULAR + steel(), one_list),
+                        {"run 5", "special_bonds lj 0.5 0.5 0.5\nset group some x v_there\nrun 1 pre no",
+                         "special_bonds lj 1 1 1\nset group some x v_back\nrun 5 pre no", "run 50"}),
+            0);
 }
 
 // LAMMPS gives contacts room for their history once
@@ -304,7 +325,23 @@ TEST(FixWallGranNear, Planes)
     EXPECT_EQ(differences(shaken_box(pair, wall + law + sides + " shear y 0.3"), RUNS), 0);
   }
   EXPECT_EQ(differences(shaken_box(pair, wall + sticky("0.4") + sides + " shear x 0.5"), RUNS), 0);
-  EXPECT_EQ(differences(shaken_box(pair), {"run 100", "displace_atoms all move 0 0 -5e-5\nrun 50 pre no"}), 0);
+  EXPECT_EQ(differences(shaken_box(pair), {"run 100", "displace_atoms all move 0 0 -5e-5 units box\nrun 50 pre no"}),
+            0);
+}
+
+// an atom forgets what it had of the wall when it is seen far from it, which it is in the wall's group only
+TEST(FixWallGranNear, AtomsThatLeaveAndJoinTheGroup)
+{
+  for (const std::string &law : {steel(), sticky()})
+    EXPECT_EQ(differences(shaken_box(GRANULAR + steel(), "group some id 1:216\nunfix floor\nfix floor some wall/gran "
+                                                         "granular" +
+                                                             law +
+                                                             "zplane 0.0 8.4e-3\n"
+                                                             "neigh_modify every 1000 delay 1000 check no"),
+                          {"run 6", "group some clear\ndisplace_atoms all move 0 0 8e-4 units box\nrun 1 pre no",
+                           "group some id 1:216\nrun 1 pre no",
+                           "displace_atoms all move 0 0 -8e-4 units box\nrun 30 pre no"}),
+              0);
 }
 
 namespace {
