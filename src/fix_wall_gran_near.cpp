@@ -75,6 +75,15 @@ void FixWallGranNear::post_force(int vflag)
   add_contacts();
 }
 
+/* ---------------------------------------------------------------------- */
+
+Dust::Planes FixWallGranNear::planes() const
+{
+  double velocity[3] = {0.0, 0.0, 0.0};
+  if (wshear) velocity[axis] = vshear;
+  return {wallstyle, lo, hi, at(velocity)};
+}
+
 /* ----------------------------------------------------------------------
    An atom that is far has no history any more. One that has left the group keeps what it had, as long as it stays out.
 ------------------------------------------------------------------------- */
@@ -82,13 +91,13 @@ void FixWallGranNear::post_force(int vflag)
 void FixWallGranNear::find_near()
 {
   constexpr double SLACK = 1.0e-6;    // more than rounding may add
-  const Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
+  const Dust::Planes wall = planes();
   margin = MARGIN * neighbor->skin;
   const double reach = (1.0 + SLACK) * margin;
   const int nlocal = atom->nlocal;
   near.clear();
   for (int i = 0; i < nlocal; i++) {
-    const double distance = planes.distance(atom->x[i][wallstyle]), *history = history_one[i];
+    const double distance = wall.distance(atom->x[i][wallstyle]), *history = history_one[i];
     const bool is_near = laws.front().touches(distance * distance, atom->radius[i], 0.0, reach);
     if (!is_near && atom->mask[i] & groupbit)
       std::fill_n(history_one[i], size_history, 0.0);
@@ -105,11 +114,11 @@ void FixWallGranNear::add_contacts()
 {
   constexpr std::size_t FEW = 4;    // below, batches would be mostly empty
   ContactLaw *law = laws.data();
-  const Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
+  const Dust::Planes wall = planes();
   queue->clear();    // an error may have left some
   for (const int i : near) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double distance = planes.distance(atom->x[i][wallstyle]);
+    const double distance = wall.distance(atom->x[i][wallstyle]);
     if (!law->touches(distance * distance, atom->radius[i], 0.0)) {
       std::fill_n(history_one[i], size_history, 0.0);
       continue;
@@ -130,8 +139,8 @@ void FixWallGranNear::add_contacts()
 
 void FixWallGranNear::compute_model(int i, double distance)
 {
-  double velocity[3] = {0.0, 0.0, 0.0}, resting[3] = {0.0, 0.0, 0.0};
-  if (wshear) velocity[axis] = vshear;
+  double velocity[3], resting[3] = {0.0, 0.0, 0.0};
+  put(velocity, planes().velocity);
   std::fill_n(model->dx, 3, 0.0);
   model->dx[wallstyle] = distance;
   model->radi = atom->radius[i];
@@ -153,11 +162,7 @@ void FixWallGranNear::compute_model(int i, double distance)
 void FixWallGranNear::compute_waiting()
 {
   if (queue->empty()) return;
-  Dust::Planes planes = {wallstyle, lo, hi, {0.0, 0.0, 0.0}};
-  double velocity[3] = {0.0, 0.0, 0.0};
-  if (wshear) velocity[axis] = vshear;
-  planes.velocity = at(velocity);
-  queue->meet(Dust::Spheres{atom->x[0], atom->v[0], atom->omega[0], atom->radius, atom->rmass}, planes);
+  queue->meet(Dust::Spheres{atom->x[0], atom->v[0], atom->omega[0], atom->radius, atom->rmass}, planes());
   queue->compute(dt, update->setupflag == 0, update->ntimestep);
   for (const ContactQueue::Contact &contact : *queue) {
     const int i = contact.i();

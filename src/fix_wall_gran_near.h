@@ -11,6 +11,7 @@ FixStyle(wall/gran,FixWallGranNear);
 #ifndef LMP_FIX_WALL_GRAN_NEAR_H
 #define LMP_FIX_WALL_GRAN_NEAR_H
 
+#include "core/contact_batch.h"
 #include "core/whereabouts.h"
 
 #include "fix_wall_gran.h"
@@ -38,6 +39,7 @@ class FixWallGranNear : public FixWallGran {
   bool left_to_parent;
   std::vector<class ContactLaw> laws;    // the one
   void read_law();
+  Dust::Planes planes() const;
 
   std::vector<int> near;     // atoms that touch the wall or may soon, or have a history
   Dust::Whereabouts then;    // when they were found
