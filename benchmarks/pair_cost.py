@@ -7,7 +7,7 @@ CPU time (user and system) of whole processes; variants run in turn, so that wha
 and medians over the repeats are given, of times and of ratios within a repeat. `--before` names the folder of a plugin
 that was built earlier: the same models by the code of then.
 
-bed: 20,000 carriers that lie still on a floor, periodic to the sides, for 500 steps. They settle once, by our plugin,
+bed: 20,000 carriers that lie still on a floor, periodic to the sides, for 1000 steps. They settle once, by our plugin,
 in two minutes; `--bed FILE` keeps where they lie, or reads it if it is there. LAMMPS' granular has its own
 coeff_restitution with limit_damping; gran/hertz/history and LIGGGHTS' hertz with tangential history have the same
 stiffness and friction. Their damping is another, which in a bed at rest costs the same.
@@ -34,7 +34,7 @@ from machine import description
 from resolved_cost import LMP, at_rest, stock, uncounted
 
 CARRIERS = 20_000
-STEPS = 500  # of the bed
+STEPS = 1000  # of the bed
 FLIGHT, FEW = 2500, 500  # of the impact at rest
 GRAINS = 4500
 KN, KT = 1.5384615384615e8, 1.9004524886878e8  # of hertz/material 2.1e8 with nu 0.3: 4/3 E*, 8 G*

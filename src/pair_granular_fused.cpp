@@ -46,7 +46,7 @@ void PairGranularFused::init_style()
   laws_known = false;
   const bool first = !fix_history;
   PairGranular::init_style();
-  if (first) size_kept = size_history;
+  if (first) size_kept = get_size_history();
 }
 
 void PairGranularFused::reset_dt()
@@ -60,11 +60,11 @@ void PairGranularFused::reset_dt()
 void PairGranularFused::read_laws()
 {
   // LAMMPS would write beyond it, or take one contact's for another's; said here, when no list is asked for any more
-  if (size_history != size_kept)
+  if (get_size_history() != size_kept)
     error->all(FLERR,
                "Pair granular keeps {} values of each contact since its first run, and now has models with {}: give "
                "their pair_coeff before it, or pair_style none before pair_style granular",
-               size_kept, size_history);
+               size_kept, get_size_history());
   laws.clear();
   for (int m = 0; m < nmodels; m++) laws.emplace_back(models_list[m], m + 1);
   none_fused = std::all_of(laws.begin(), laws.end(), [](const auto &law) { return law.kind == ContactLaw::MODEL; });

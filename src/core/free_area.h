@@ -24,11 +24,11 @@ struct ShellCell {
 
 /*! Where on the part of a sphere above a height there may still be room, for grains that come from large to small
  *
- * Cells that no grain excludes entirely. One in which a grain found no room is quartered, and of its quarters only those
- * are kept that have room: so what is looked at is what is near a miss, whatever the number of grains. A cell that has
- * room for smaller grains only waits until they come. Drawn with a probability that goes with its area, a cell and then
- * a place in it are uniform over a region that contains all that is free, so the first place with room is uniform over
- * what is free (the idea of Wang, Int. J. Mod. Phys. C 5, 707 (1994), for a sphere and many sizes). */
+ * Cells that no grain excludes entirely. One in which a grain found no room is quartered, and of its quarters only
+ * those are kept that have room: so what is looked at is what is near a miss, whatever the number of grains. A cell
+ * that has room for smaller grains only waits until they come. Drawn with a probability that goes with its area, a cell
+ * and then a place in it are uniform over a region that contains all that is free, so the first place with room is
+ * uniform over what is free (the idea of Wang, Int. J. Mod. Phys. C 5, 707 (1994), for a sphere and many sizes). */
 class FreeArea {
  public:
   explicit FreeArea(double lowest_z) : zlo(lowest_z), levels(DEEPEST + 1) {}

@@ -59,8 +59,8 @@ class SequentialPlacement {
     grains.reserve(number);
   }
 
-  /*! Patience that leaves the textures of seeds as they are: half a second, and for each grain twice what any layer takes
-   *  that is not nearly full. Cells for equal grains are never made anew */
+  /*! Patience that leaves the textures of seeds as they are: half a second, and for each grain twice what any layer
+   *  takes that is not nearly full. Cells for equal grains are never made anew */
   static double long_patience(const std::vector<double> &radii)
   {
     constexpr double MANY = 1.0e6, MANY_PER_GRAIN = 200.0;
@@ -169,7 +169,7 @@ class SequentialPlacement {
     return true;
   }
 
-  // the largest chord from the middle of a cell to a point of it: the farthest are corners once it is narrower than pi/2
+  // the largest chord from the middle of a cell to a point of it: to a corner, once it is narrower than pi/2
   static double radius_of(const Height (&z)[2], const Azimuth (&phi)[2], const double *middle)
   {
     double farthest = 0.0;

@@ -1,4 +1,4 @@
-// Placement from the free area: as placement by tries anywhere, and at a cost a grain that does not go with their number.
+// Placement from the free area: as by tries anywhere, and at a cost a grain that does not go with their number.
 
 #include "sequential_placement.h"
 
