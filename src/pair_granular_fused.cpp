@@ -111,14 +111,15 @@ void PairGranularFused::compute(int eflag, int vflag)
 }
 
 /* ----------------------------------------------------------------------
-   another type has another law, with another reach and another adhesion
+   Another type has another law, with another reach and another adhesion. Atoms are counted as the list has them: LAMMPS
+   may have forgotten how many ghosts there are, as when atoms are displaced, and still goes on with them.
 ------------------------------------------------------------------------- */
 
 bool PairGranularFused::still_close() const
 {
   constexpr double HALF = 0.5 * (1.0 - 1.0e-6);    // of two atoms; less what rounding may add
-  const int nall = atom->nlocal + atom->nghost;
-  return close_known && neighbor->ago != 0 && !then.left(atom->x[0], atom->radius, nall, HALF * gap) &&
+  const int listed = static_cast<int>(types_then.size());
+  return close_known && neighbor->ago != 0 && !then.left(atom->x[0], atom->radius, listed, HALF * gap) &&
          std::equal(types_then.begin(), types_then.end(), atom->type);
 }
 
@@ -148,12 +149,15 @@ void PairGranularFused::find_close()
   adapt_margin();
   gap = margin * neighbor->skin;
   close.clear();
+  int listed = 0;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i], *touch = fix_history->firstflag[i];
     double *history = fix_history->firstvalue[i];
+    listed = std::max(listed, i + 1);
     for (int jj = 0; jj < list->numneigh[i]; jj++, history += size) {
       if (special[sbmask(neighbors[jj])] == 0.0) continue;
       const int j = neighbors[jj] & NEIGHMASK;
+      listed = std::max(listed, j + 1);
       ContactLaw *law = law_of[type[i] * (ntypes + 1) + type[j]];
       const Vector dx = at(x, i) - at(x, j);
       if (touch[jj] || !law->ends() || law->touches(dot(dx, dx), radius[i], radius[j], gap))
@@ -161,9 +165,8 @@ void PairGranularFused::find_close()
     }
   }
   adhesions.assign(hertz_alone ? 0 : close.size(), {});
-  const int nall = atom->nlocal + atom->nghost;
-  then.note(x, radius, nall);
-  types_then.assign(type, type + nall);
+  then.note(x, radius, listed);
+  types_then.assign(type, type + listed);
   close_known = true;
 }
 

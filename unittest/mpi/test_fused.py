@@ -15,3 +15,11 @@ def test_same_bits_as_lammps_own_loop(tmp_path: Path, ranks: int, newton: str) -
     assert thermo(said[0]) == thermo(said[1])
     assert ours == (tmp_path / "fused.txt").read_text()
     assert ours.count("\n") == 432 + 9
+
+
+def test_ghosts_that_lammps_has_not_counted(tmp_path: Path) -> None:
+    states = []
+    for heat in ("no", "yes"):
+        mpirun(tmp_path, "in.displaced", 2, heat=heat)
+        states.append((tmp_path / "displaced.txt").read_text())
+    assert states[0] == states[1]
