@@ -1,9 +1,7 @@
 // Contacts followed over some steps by LAMMPS' granular model and by the loops of src/core, without a LAMMPS around
 // them: prints how many have other forces, torques or histories. For processors that there is only an emulator of.
 
-#include "contact_law.h"
-#include "core/grain_contacts.h"
-#include "core/hertz_contacts.h"
+#include "contact_queue.h"
 
 #include "force.h"
 #include "gran_sub_mod.h"
@@ -21,6 +19,8 @@
 
 using namespace LAMMPS_NS;
 using namespace Granular_NS;
+using Dust::at;
+using Dust::put;
 using Dust::Vector;
 
 namespace {
@@ -30,7 +30,7 @@ constexpr int CONTACTS = 400, STEPS = 60, HISTORY = 32;
 
 struct Sphere {
   Vector x, v, omega;
-  double radius;
+  double radius, mass;
 };
 
 // what a step leaves of a contact
@@ -84,15 +84,11 @@ GranularModel *model_of(bool grains, bool synchronized, double shear_damping)
   return model;
 }
 
-void step_of_lammps(GranularModel *model, const Sphere &i, const Sphere &j, double mass, Result &result)
+void step_of_lammps(GranularModel *model, const Sphere &i, const Sphere &j, Result &result)
 {
   double numbers[6][3];
   const Vector *vectors[] = {&i.x, &j.x, &i.v, &j.v, &i.omega, &j.omega};
-  for (int k = 0; k < 6; k++) {
-    numbers[k][0] = vectors[k]->x;
-    numbers[k][1] = vectors[k]->y;
-    numbers[k][2] = vectors[k]->z;
-  }
+  for (int k = 0; k < 6; k++) put(numbers[k], *vectors[k]);
   model->xi = numbers[0];
   model->xj = numbers[1];
   model->vi = numbers[2];
@@ -101,7 +97,7 @@ void step_of_lammps(GranularModel *model, const Sphere &i, const Sphere &j, doub
   model->omegaj = numbers[5];
   model->radi = i.radius;
   model->radj = j.radius;
-  model->meff = mass;
+  model->meff = i.mass * j.mass / (i.mass + j.mass);
   model->touch = result.touch;
   model->history_update = 1;
   model->history = result.history;
@@ -113,85 +109,26 @@ void step_of_lammps(GranularModel *model, const Sphere &i, const Sphere &j, doub
   std::copy_n(model->torquesj, 3, result.force + 6);
 }
 
-Vector at(const double *v) { return {v[0], v[1], v[2]}; }
-
-void put(double *to, const Vector &v)
+void step_of_ours(ContactLaw &law, ContactQueue &queue, const Sphere &i, const Sphere &j, Result &result)
 {
-  to[0] = v.x;
-  to[1] = v.y;
-  to[2] = v.z;
-}
-
-template <class Batch> Batch &batch_of(const ContactLaw &law, const Sphere &i, const Sphere &j, double mass, Result &r)
-{
-  static Batch b;
-  b.clear();
-  b.count = 1;
-  const Vector dx = i.x - j.x;
-  b.dx.set(0, dx);
-  b.rsq[0] = dot(dx, dx);
-  b.radius_i[0] = i.radius;
-  b.radius_j[0] = j.radius;
-  b.velocity.set(0, i.v - j.v);
-  b.turning.set(0, i.radius * i.omega + j.radius * j.omega);
-  b.mass[0] = mass;
-  b.half[0] = law.synchronized ? 0.5 * DT : 0.0;
-  b.damping[0] = law.damping;
-  b.shear_stiffness[0] = law.shear_stiffness;
-  b.shear_damping[0] = law.shear_damping;
-  b.friction[0] = law.friction;
-  b.synchronized = law.synchronized;
-  b.shear_damped = law.shear_damping != 0.0;
-  b.shear.set(0, at(r.history + law.shear_place));
-  return b;
-}
-
-void keep(const Dust::ContactBatch &b, const ContactLaw &law, Result &result)
-{
-  put(result.force, b.force[0]);
-  put(result.force + 3, b.torque_i[0]);
-  put(result.force + 6, b.torque_j[0]);
-  put(result.history + law.shear_place, b.shear[0]);
-}
-
-void step_of_carriers(const ContactLaw &law, const Sphere &i, const Sphere &j, double mass, Result &result)
-{
-  const double radii = i.radius + j.radius;
-  if (!(dot(i.x - j.x, i.x - j.x) < radii * radii)) return result.clear();
+  if (!law.touches(dot(i.x - j.x, i.x - j.x), i.radius, j.radius)) return result.clear();
   result.touch = true;
-  auto &b = batch_of<Dust::HertzBatch>(law, i, j, mass, result);
-  b.stiffness[0] = law.stiffness;
-  Dust::compute_forces(b, DT, true);
-  keep(b, law, result);
-}
-
-void step_of_grains(ContactLaw &law, const Sphere &i, const Sphere &j, double mass, Result &result)
-{
-  if (!law.grain_touches(dot(i.x - j.x, i.x - j.x), i.radius, j.radius)) return result.clear();
-  result.touch = true;
-  auto &b = batch_of<Dust::GrainBatch>(law, i, j, mass, result);
-  double *kept = result.history + law.neck_place;
-  b.effective_radius[0] = law.effective_radius;
-  b.theta_crit[0] = law.theta_crit;
-  b.hamaker[0] = law.adhesion.hamaker;
-  b.z0[0] = law.adhesion.z0;
-  b.range[0] = law.adhesion.range;
-  b.pull_off_force[0] = law.adhesion.pull_off_force;
-  b.equilibrium_radius[0] = law.adhesion.equilibrium_radius;
-  b.breaking_gap[0] = law.adhesion.breaking_gap;
-  b.spin.set(0, i.omega - j.omega);
-  b.neck[0] = kept[0];
-  b.rolling.set(0, at(kept + 1));
-  b.overlap[0] = kept[4];
-  b.coasting[0] = kept[5];
-  b.rate[0] = kept[6];
-  Dust::compute_forces(b, DT, true);
-  keep(b, law, result);
-  kept[0] = b.neck[0];
-  put(kept + 1, b.rolling[0]);
-  kept[4] = b.overlap[0];
-  kept[5] = b.coasting[0];
-  kept[6] = b.rate[0];
+  double x[6], v[6], omega[6];
+  for (int k = 0; k < 2; k++) {
+    const Sphere &sphere = k ? j : i;
+    put(x + 3 * k, sphere.x);
+    put(v + 3 * k, sphere.v);
+    put(omega + 3 * k, sphere.omega);
+  }
+  const double radius[2] = {i.radius, j.radius}, mass[2] = {i.mass, j.mass};
+  queue.clear();
+  queue.add(&law, result.history, 0, 1);
+  queue.meet(Dust::Spheres{x, v, omega, radius, mass});
+  queue.compute(DT, true, 0);
+  const ContactQueue::Contact &contact = *queue.begin();
+  put(result.force, contact.force());
+  put(result.force + 3, contact.torque_i());
+  put(result.force + 6, contact.torque_j());
 }
 
 struct Count {
@@ -211,22 +148,24 @@ struct Count {
 void compare(bool grains, bool synchronized, double shear_damping, Count &count)
 {
   GranularModel *model = model_of(grains, synchronized, shear_damping);
-  ContactLaw law(model, 1);
+  std::vector<ContactLaw> laws = {ContactLaw(model, 1)};
+  ContactQueue queue(laws);
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   const auto vector = [&](double size) { return Vector{size * u(engine), size * u(engine), size * u(engine)}; };
   for (int c = 0; c < CONTACTS; c++) {
-    Sphere i = {vector(1.0), vector(1.0), vector(500.0), 0.7e-3 + 1e-4 * u(engine)};
-    Sphere j = {{0.0, 0.0, 0.0}, vector(1.0), vector(500.0), 0.7e-3 + 1e-4 * u(engine)};
+    const auto size = [&] { return 0.7e-3 + 1e-4 * u(engine); };
+    const auto weight = [&] { return 1e-5 * (1.0 + 0.3 * u(engine)); };
+    Sphere i = {vector(1.0), vector(1.0), vector(500.0), size(), weight()};
+    Sphere j = {{0.0, 0.0, 0.0}, vector(1.0), vector(500.0), size(), weight()};
     i.x = ((i.radius + j.radius - 1e-5) / std::sqrt(dot(i.x, i.x))) * i.x;
-    const double mass = 5e-6 * (1.0 + 0.3 * u(engine));
     Result lammps, ours;
     for (int s = 0; s < STEPS; s++) {
       i.v = i.v + vector(0.05);
       i.x = i.x + DT * i.v;
       j.x = j.x + DT * j.v;
-      step_of_lammps(model, i, j, mass, lammps);
-      grains ? step_of_grains(law, i, j, mass, ours) : step_of_carriers(law, i, j, mass, ours);
+      step_of_lammps(model, i, j, lammps);
+      step_of_ours(laws.front(), queue, i, j, ours);
       count.add(lammps, ours);
     }
   }

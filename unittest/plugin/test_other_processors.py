@@ -19,8 +19,14 @@ SOURCE = Path(re.findall(r"^LAMMPS_SOURCE_DIR:PATH=(.*)", (BUILD / "CMakeCache.t
 COMPILER, EMULATOR = "aarch64-linux-gnu-g++", "qemu-aarch64"
 GRANULAR = ["granular_model", "gran_sub_mod"]
 GRANULAR += [f"gran_sub_mod_{kind}" for kind in ("normal", "damping", "tangential", "rolling", "twisting", "heat")]
-STYLES = ["gran_sub_mod_dust_normal", "gran_sub_mod_dust_damping", "gran_sub_mod_dust_rolling", "contact_law"]
-CORE = ["hertz_contacts", "grain_contacts", "jkr", "damping"]
+STYLES = [
+    "gran_sub_mod_dust_normal",
+    "gran_sub_mod_dust_damping",
+    "gran_sub_mod_dust_rolling",
+    "contact_law",
+    "contact_queue",
+]
+CORE = ["contact_batch", "hertz_contacts", "grain_contacts", "jkr", "damping"]
 CONTRACTION = "-ffp-contract=off"  # cmake/Sources.cmake
 
 pytestmark = [
