@@ -169,7 +169,8 @@ def pair_instructions(deck: Path, variables: dict[str, str]) -> int:
         text=True,
         check=True,
     ).stdout
-    return int(re.search(r"^ *([\d,]+) .*PairGranular(?:Fused)?::compute\(int", table, re.MULTILINE)[1].replace(",", ""))
+    compute = re.search(r"^ *([\d,]+) .*PairGranular(?:Fused)?::compute\(int", table, re.MULTILINE)
+    return int(compute[1].replace(",", ""))
 
 
 def contact(folder: Path, repeat: int) -> dict:
