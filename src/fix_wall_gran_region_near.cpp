@@ -105,7 +105,7 @@ DUST_LANES static void find_moved(const double *x, int n, const Frame &seen, con
 /* ---------------------------------------------------------------------- */
 
 FixWallGranRegionNear::FixWallGranRegionNear(LAMMPS *_lmp, int narg, char **arg) :
-    FixWallGranRegion(_lmp, narg, arg), skips(false)
+    FixWallGranRegion(_lmp, narg, arg), skips(false), margin(0.0)
 {
 }
 
@@ -129,7 +129,7 @@ void FixWallGranRegionNear::init()
    cylinder: look beside the place, too.
 ------------------------------------------------------------------------- */
 
-void FixWallGranRegionNear::look_at(int i, const Vector &place, double margin)
+void FixWallGranRegionNear::look_at(int i, const Vector &place)
 {
   constexpr double BESIDE = 1.0e-3;
   const double *x = atom->x[i], radius = atom->radius[i], off = BESIDE * margin;
@@ -167,7 +167,8 @@ void FixWallGranRegionNear::find_near()
   const int nlocal = atom->nlocal, *mask = atom->mask;
   const double *const *x = atom->x, *radius = atom->radius;
   const bool anew = neighbor->ago == 0 || static_cast<int>(near.size()) != nlocal;
-  const double margin = 0.5 * neighbor->skin, margin2 = margin * margin;
+  if (anew) margin = 0.5 * neighbor->skin;    // holds as long as what was found with it
+  const double margin2 = margin * margin;
   const Frame frame(region);
   for (std::vector<double> *each : {&places[0], &places[1], &places[2], &radii, &moved2}) each->resize(nlocal);
   near.resize(nlocal);
@@ -179,7 +180,7 @@ void FixWallGranRegionNear::find_near()
     const bool looks_now = anew || !(moved2[i] < margin2) || radius[i] != radii[i];
     if (!looks_now && !near[i]) continue;
     const Vector place = frame.of(x[i]);
-    if (looks_now) look_at(i, place, margin);
+    if (looks_now) look_at(i, place);
     if (may_touch(place, radius[i]))
       groups[i] = mask[i];
     else if (use_history)

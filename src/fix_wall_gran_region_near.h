@@ -36,7 +36,8 @@ class FixWallGranRegionNear : public FixWallGranRegion {
   std::vector<char> near;
   std::vector<int> groups;    // of the atoms that may touch the wall, 0 of all others
   bool skips;                 // whether atoms may be skipped
-  void look_at(int, const Dust::Vector &, double);
+  double margin;              // up to which they are near
+  void look_at(int, const Dust::Vector &);
   bool may_touch(const Dust::Vector &, double) const;
   void find_near();
 };

@@ -239,7 +239,12 @@ TEST(PairGranularFused, WhatChangesWithoutANewList)
   const std::string still = "velocity all scale 1e-9\nfix hold all setforce 0 0 0\nneighbor 1e-6 bin\n"
                             "neigh_modify every 1000 delay 1000 check no\n";
   const std::string fly = "velocity all set 0.0 0.0 v_c\nneighbor 2e-3 bin\nrun 100 pre no";
-  EXPECT_EQ(differences(shaken_box(GRANULAR + steel()), {"velocity all scale 1e-6\n" + still + "run 2", fly}), 0);
+  const std::string region = "region inner block INF INF INF INF 0.2e-3 8.2e-3 units box\n"
+                             "fix inner all wall/gran/region granular" +
+                             steel() + "region inner";
+  for (const std::string &more : {std::string(), region})
+    EXPECT_EQ(differences(shaken_box(GRANULAR + steel(), more), {"velocity all scale 1e-6\n" + still + "run 2", fly}),
+              0);
   // contacts that LAMMPS' own loop has seen end, and that begin again
   const std::string one_list = "neighbor 2e-3 bin\nneigh_modify every 1000 delay 1000 check no\n"
                                "group some id 1:216:2\nvariable there atom x+6e-5\nvariable back atom x-6e-5\n";
