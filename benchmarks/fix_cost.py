@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 from deck import BUILD, changed, read
-from machine import description
+from machine import description, instructions
 
 LMP = BUILD / "bin/lmp-dust"
 CASES = {
@@ -53,26 +53,11 @@ def loop_time(deck: Path, variables: dict[str, str]) -> float:
     return float(re.search(r"^Loop time of (\S+)", done.stdout, re.MULTILINE)[1])
 
 
-def instructions(deck: Path, variables: dict[str, str]) -> tuple[int, int]:
-    """Instructions of the fix's post_force and of the whole time loop."""
-    out = deck.parent / "callgrind.out"
-    subprocess.run(
-        ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", *command(deck, variables)],
-        capture_output=True,
-        check=True,
-        cwd=deck.parent,
+def fix_instructions(deck: Path, variables: dict[str, str]) -> list[int]:
+    """Of the fix's post_force and of the whole time loop."""
+    return instructions(
+        command(deck, variables), deck.parent, r"FixDustDetach::post_force\(int\)", r"Verlet::run\(int\)"
     )
-    table = subprocess.run(
-        ["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)],
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
-
-    def count(function: str) -> int:
-        return int(re.search(rf"^ *([\d,]+) .*{re.escape(function)}", table, re.MULTILINE)[1].replace(",", ""))
-
-    return count("FixDustDetach::post_force(int)"), count("Verlet::run(int)")
 
 
 def main() -> None:
@@ -96,7 +81,8 @@ def main() -> None:
                 "fix_against_rest": (with_fix - rest) / rest,
             }
             if shutil.which("valgrind"):
-                fix, loop = instructions(paths["with"], variables | {"limit": str(min(int(variables["limit"]), 3000))})
+                shorter = variables | {"limit": str(min(int(variables["limit"]), 3000))}
+                fix, loop = fix_instructions(paths["with"], shorter)
                 row |= {"instructions_fix": fix, "instructions_loop": loop, "instructions_fix_share": fix / loop}
             result[case] = row
             print(

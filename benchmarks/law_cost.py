@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 from deck import read
-from fix_cost import LMP, command, instructions
+from fix_cost import LMP, command, fix_instructions
 from machine import description
 
 LAWS = ("impulse", "estimate")
@@ -52,7 +52,7 @@ def main() -> None:
                     times[law].append(processor_seconds(path, words))
             row: dict = {"processor_seconds": {law: min(times[law]) for law in LAWS}}
             if name == "in.impacts":
-                row["instructions_fix"] = {law: instructions(path, words)[0] for law, words in cases.items()}
+                row["instructions_fix"] = {law: fix_instructions(path, words)[0] for law, words in cases.items()}
             result[case] = row
             shares = {what: values["impulse"] / values["estimate"] for what, values in row.items()}
             print(f"{case}: impulse/estimate", *(f"{what} {share:.3f}" for what, share in shares.items()), flush=True)

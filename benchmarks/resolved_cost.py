@@ -27,7 +27,7 @@ import tempfile
 from pathlib import Path
 
 from deck import BUILD, INPUTS, PLUGIN, changed
-from machine import description
+from machine import description, instructions
 
 LMP = BUILD / "bin/lmp"
 CASES = {"8 m/s": {}, "12 m/s, 60 degrees": {"speed": "12", "angle": "60"}}
@@ -147,30 +147,10 @@ def write(folder: Path, name: str, text: str) -> Path:
 
 
 def pair_instructions(deck: Path, variables: dict[str, str]) -> int:
-    out = deck.parent / "callgrind.out"
-    words = ["-in", str(deck), "-log", "none", "-var", "plugin", str(PLUGIN)]
+    words = [str(LMP), "-in", str(deck), "-log", "none", "-var", "plugin", str(PLUGIN)]
     for name, value in variables.items():
         words += ["-var", name, value]
-    subprocess.run(
-        [
-            "valgrind",
-            "--tool=callgrind",
-            f"--callgrind-out-file={out}",
-            str(LMP),
-            *words,
-        ],
-        capture_output=True,
-        check=True,
-        cwd=deck.parent,
-    )
-    table = subprocess.run(
-        ["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)],
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
-    compute = re.search(r"^ *([\d,]+) .*PairGranular(?:Fused)?::compute\(int", table, re.MULTILINE)
-    return int(compute[1].replace(",", ""))
+    return instructions(words, deck.parent, r"PairGranular(?:Fused)?::compute\(int")[0]
 
 
 def contact(folder: Path, repeat: int) -> dict:

@@ -24,7 +24,7 @@ from .errors import InvalidInput, shown
 from .figures import COLOUR_MAP, COLOURS, MARKERS, STYLE, fixed_words, save, table_of
 from .impact import is_timestep_chosen
 from .parameters import ABOUT, PARAMETER_TYPES, PARAMETERS
-from .result import COLUMNS, Result
+from .result import COLUMNS, MAIN_COLUMNS, Result
 
 #: more values of a parameter than these are not told apart by line style, but make a band
 MOST_STYLES = 6
@@ -38,19 +38,7 @@ BAND = (5, 95)
 LINE_STYLES: list[Any] = ["solid", "dashed", "dotted", "dashdot", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3))]
 
 #: columns that may be drawn upwards
-DRAWN = (
-    *(
-        "dispersion_ratio",
-        "north",
-        "south",
-        "normal",
-        "tangential_mode",
-        "knocked",
-        "contact_time",
-        "peak_acceleration",
-    ),
-    *("restitution_realised", "grains"),
-)
+DRAWN = (*MAIN_COLUMNS, "restitution_realised", "grains")
 
 
 def plot_by(

@@ -20,7 +20,7 @@ from .errors import InvalidInput
 from .files import as_path, read_text, replace_file, scratch_folder
 from .impact import PARTS, Impact, is_timestep_chosen
 from .parameters import ABOUT, PARAMETER_TYPES, PARAMETERS, Parameters
-from .result import COLUMNS, KEYS, Result, described_materials, read_csv
+from .result import COLUMNS, KEYS, MAIN_COLUMNS, Result, described_materials, read_csv
 from .runner import run
 from .shares import event_lines, read_fates
 from .sweeping import TABLE
@@ -37,17 +37,7 @@ MOST_CARRIERS, MOST_GRAINS = 8, 100_000
 MOST_ROWS = 3000
 
 #: columns that are shown at first, besides the parameters that vary
-SHOWN = (
-    "dispersion_ratio",
-    "north",
-    "south",
-    "normal",
-    "tangential_mode",
-    "knocked",
-    "contact_time",
-    "peak_acceleration",
-    "end",
-)
+SHOWN = (*MAIN_COLUMNS, "end")
 
 
 def write_report(folder: str | Path, out: str | Path | None = None) -> Path:

@@ -115,6 +115,17 @@ class Result(Parameters):
 
 #: what is known of each column
 COLUMNS = described(Result)
+#: those that are looked at first: on figures and in a report
+MAIN_COLUMNS = (
+    "dispersion_ratio",
+    "north",
+    "south",
+    "normal",
+    "tangential_mode",
+    "knocked",
+    "contact_time",
+    "peak_acceleration",
+)
 #: in the order of the table: the time step beside the steps, and what is newer at the end
 _PLACES = list(COLUMNS)
 KEYS = tuple(
