@@ -239,7 +239,7 @@ TEST(PairGranularFused, WhatChangesWithoutANewList)
   const std::string still = "velocity all scale 1e-9\nfix hold all setforce 0 0 0\nneighbor 1e-6 bin\n"
                             "neigh_modify every 1000 delay 1000 check no\n";
   const std::string fly = "velocity all set 0.0 0.0 v_c\nneighbor 2e-3 bin\nrun 100 pre no";
-  const std::string region = "region inner block INF INF INF INF 0.2e-3 8.2e-3 units box\n"
+  const std::string region = "region inner plane 0 0 1.3e-3 0 0 1 units box\n"
                              "fix inner all wall/gran/region granular" +
                              steel() + "region inner";
   for (const std::string &more : {std::string(), region})
